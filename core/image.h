@@ -1,0 +1,116 @@
+// Images that own their pixels, and the small views that kernels take.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/check.h"
+#include "core/maths.h"
+
+namespace core {
+
+/// Pixels of an image owned elsewhere. pitch counts elements from one row to the next.
+template <class T>
+struct ImageView {
+  using Value = std::remove_const_t<T>;
+  T* data = nullptr;
+  int width = 0, height = 0;
+  std::ptrdiff_t pitch = 0;
+
+  T& operator()(int x, int y) const {
+    DCHECK(x >= 0 && x < width && y >= 0 && y < height);
+    return data[y * pitch + x];
+  }
+  T* row(int y) const { return data + y * pitch; }
+  bool empty() const { return data == nullptr; }
+  bool contains(int x, int y) const { return x >= 0 && x < width && y >= 0 && y < height; }
+  Value load(int x, int y) const { return (*this)(x, y); }
+  void store(int x, int y, const Value& value) const
+    requires(!std::is_const_v<T>)
+  {
+    (*this)(x, y) = value;
+  }
+  operator ImageView<const T>() const
+    requires(!std::is_const_v<T>)
+  {
+    return {data, width, height, pitch};
+  }
+};
+
+template <class T>
+using In = ImageView<const T>;
+
+/// An image that owns its pixels: row-major, width x height, no padding.
+template <class T>
+class Image {
+ public:
+  Image() = default;
+  Image(int width, int height, const T& value = T{})
+      : width_(width), height_(height), pixels_(static_cast<std::size_t>(width) * height, value) {}
+
+  int width() const { return width_; }
+  int height() const { return height_; }
+  bool empty() const { return pixels_.empty(); }
+  std::size_t size() const { return pixels_.size(); }
+  T* data() { return pixels_.data(); }
+  const T* data() const { return pixels_.data(); }
+  T& operator()(int x, int y) { return pixels_[index(x, y)]; }
+  const T& operator()(int x, int y) const { return pixels_[index(x, y)]; }
+  void fill(const T& value) { std::fill(pixels_.begin(), pixels_.end(), value); }
+
+  ImageView<T> view() { return {pixels_.data(), width_, height_, width_}; }
+  In<T> view() const { return {pixels_.data(), width_, height_, width_}; }
+  operator ImageView<T>() { return view(); }
+  operator In<T>() const { return view(); }
+
+ private:
+  std::size_t index(int x, int y) const {
+    DCHECK(x >= 0 && x < width_ && y >= 0 && y < height_);
+    return static_cast<std::size_t>(y) * width_ + x;
+  }
+  int width_ = 0, height_ = 0;
+  std::vector<T> pixels_;
+};
+
+/// A colour image as three planes, for kernels that stream rows. Const-ness as for ImageView.
+template <class T>
+struct PlanesView {
+  std::array<ImageView<T>, 3> plane;
+
+  int width() const { return plane[0].width; }
+  int height() const { return plane[0].height; }
+  bool empty() const { return plane[0].empty(); }
+  vec3 load(int x, int y) const { return {plane[0](x, y), plane[1](x, y), plane[2](x, y)}; }
+  void store(int x, int y, const vec3& v) const
+    requires(!std::is_const_v<T>)
+  {
+    for (int c = 0; c < 3; ++c) plane[c](x, y) = v[c];
+  }
+  operator PlanesView<const T>() const
+    requires(!std::is_const_v<T>)
+  {
+    return {{plane[0], plane[1], plane[2]}};
+  }
+};
+
+/// Owner of three planes of one size.
+class Planes {
+ public:
+  Planes() = default;
+  Planes(int width, int height, float value = 0) {
+    for (auto& p : planes_) p = Image<float>(width, height, value);
+  }
+  int width() const { return planes_[0].width(); }
+  int height() const { return planes_[0].height(); }
+  bool empty() const { return planes_[0].empty(); }
+  PlanesView<float> view() { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
+  PlanesView<const float> view() const { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
+  operator PlanesView<float>() { return view(); }
+  operator PlanesView<const float>() const { return view(); }
+
+ private:
+  std::array<Image<float>, 3> planes_;
+};
+
+}  // namespace core

@@ -1,0 +1,59 @@
+// Loops over pixels and rows on all threads, and sums whose bits do not depend on how many there are.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
+namespace core {
+
+/// Pixels on a tile's side; results never depend on it. 16 keeps a tile's surfaces in the second-level cache.
+inline constexpr int kDefaultTile = 16;
+
+/// Calls body(x, y) once for every pixel, tile by tile. body must only write what belongs to (x, y).
+template <class Body>
+void forEachPixel(int width, int height, Body&& body, int tile = kDefaultTile) {
+  const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+  tbb::parallel_for(tbb::blocked_range<int>(0, columns * rows, 1), [&](const tbb::blocked_range<int>& range) {
+    for (int t = range.begin(); t != range.end(); ++t) {
+      const int x0 = (t % columns) * tile, y0 = (t / columns) * tile;
+      for (int y = y0; y < std::min(y0 + tile, height); ++y)
+        for (int x = x0; x < std::min(x0 + tile, width); ++x) body(x, y);
+    }
+  });
+}
+
+/// Calls body(x0, y0, x1, y1) once for every tile [x0, x1) x [y0, y1).
+template <class Body>
+void forEachTile(int width, int height, Body&& body, int tile = kDefaultTile) {
+  const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+  tbb::parallel_for(tbb::blocked_range<int>(0, columns * rows, 1), [&](const tbb::blocked_range<int>& range) {
+    for (int t = range.begin(); t != range.end(); ++t) {
+      const int x0 = (t % columns) * tile, y0 = (t / columns) * tile;
+      body(x0, y0, std::min(x0 + tile, width), std::min(y0 + tile, height));
+    }
+  });
+}
+
+/// Calls body(y) once for every row.
+template <class Body>
+void forEachRow(int height, Body&& body) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, height, 1), [&](const tbb::blocked_range<int>& range) {
+    for (int y = range.begin(); y != range.end(); ++y) body(y);
+  });
+}
+
+/// Sum of term(i) over [0, count) in double precision, in an order fixed by count alone.
+template <class Term>
+double deterministicSum(std::int64_t count, Term&& term) {
+  return tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::int64_t>(0, count, 1024), 0.0,
+      [&](const tbb::blocked_range<std::int64_t>& range, double sum) {
+        for (std::int64_t i = range.begin(); i != range.end(); ++i) sum += term(i);
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+}
+
+}  // namespace core
