@@ -33,10 +33,10 @@ template <class A, class B>
 
 }  // namespace core
 
-#define CHECK_OP(op, a, b)                                                                  \
-  do {                                                                                      \
-    const auto& checkA = (a);                                                               \
-    const auto& checkB = (b);                                                               \
+#define CHECK_OP(op, a, b)                                                                             \
+  do {                                                                                                 \
+    const auto& checkA = (a);                                                                          \
+    const auto& checkB = (b);                                                                          \
     if (!(checkA op checkB)) core::checkFailed(__FILE__, __LINE__, #a " " #op " " #b, checkA, checkB); \
   } while (false)
 #define CHECK_EQ(a, b) CHECK_OP(==, a, b)

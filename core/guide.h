@@ -10,12 +10,12 @@ inline constexpr std::uint32_t kNoId = 0xffffffffu;  ///< id of a pixel without 
 
 /// Geometry guides of one frame, all of one size. x right, y down, pixel centres at +0.5.
 struct Guide {
-  In<float> depth;            ///< distance along the view axis in scene units; infinity where nothing was hit
-  In<float> depthSlope;       ///< |d depth / dx| + |d depth / dy| per pixel, of the surface's tangent plane
+  In<float> depth;                 ///< distance along the view axis in scene units; infinity where nothing was hit
+  In<float> depthSlope;            ///< |d depth / dx| + |d depth / dy| per pixel, of the surface's tangent plane
   PlanesView<const float> normal;  ///< unit shading normal, 0 where nothing was hit
-  In<std::uint32_t> id;       ///< instance id, kNoId where nothing was hit
-  In<vec2> motion;            ///< previous - current position in pixels
-  In<float> depthChange;      ///< depth of the same surface point in the previous frame - depth now; may be empty (0)
+  In<std::uint32_t> id;            ///< instance id, kNoId where nothing was hit
+  In<vec2> motion;                 ///< previous - current position in pixels
+  In<float> depthChange;  ///< depth of the same surface point in the previous frame - depth now; may be empty (0)
 
   int width() const { return depth.width; }
   int height() const { return depth.height; }
@@ -26,8 +26,12 @@ class GuideImages {
  public:
   GuideImages() = default;
   GuideImages(int width, int height)
-      : depth(width, height, kInfinity), depthSlope(width, height), depthChange(width, height),
-        normal(width, height), id(width, height, kNoId), motion(width, height) {}
+      : depth(width, height, kInfinity),
+        depthSlope(width, height),
+        depthChange(width, height),
+        normal(width, height),
+        id(width, height, kNoId),
+        motion(width, height) {}
   Guide view() const { return {depth, depthSlope, normal, id, motion, depthChange}; }
 
   Image<float> depth, depthSlope, depthChange;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 #include <vector>
 
 #include "core/check.h"
@@ -26,16 +27,10 @@ struct ImageView {
   bool empty() const { return data == nullptr; }
   bool contains(int x, int y) const { return x >= 0 && x < width && y >= 0 && y < height; }
   Value load(int x, int y) const { return (*this)(x, y); }
-  void store(int x, int y, const Value& value) const
-    requires(!std::is_const_v<T>)
-  {
-    (*this)(x, y) = value;
-  }
-  operator ImageView<const T>() const
-    requires(!std::is_const_v<T>)
-  {
-    return {data, width, height, pitch};
-  }
+  /// Element i of an image without padding (pitch == width), row by row.
+  T& at(std::ptrdiff_t i) const { return data[i]; }
+  void store(int x, int y, const Value& value) const requires(!std::is_const_v<T>) { (*this)(x, y) = value; }
+  operator ImageView<const T>() const requires(!std::is_const_v<T>) { return {data, width, height, pitch}; }
 };
 
 template <class T>
@@ -82,16 +77,11 @@ struct PlanesView {
   int height() const { return plane[0].height; }
   bool empty() const { return plane[0].empty(); }
   vec3 load(int x, int y) const { return {plane[0](x, y), plane[1](x, y), plane[2](x, y)}; }
-  void store(int x, int y, const vec3& v) const
-    requires(!std::is_const_v<T>)
-  {
+  vec3 at(std::ptrdiff_t i) const { return {plane[0].data[i], plane[1].data[i], plane[2].data[i]}; }
+  void store(int x, int y, const vec3& v) const requires(!std::is_const_v<T>) {
     for (int c = 0; c < 3; ++c) plane[c](x, y) = v[c];
   }
-  operator PlanesView<const T>() const
-    requires(!std::is_const_v<T>)
-  {
-    return {{plane[0], plane[1], plane[2]}};
-  }
+  operator PlanesView<const T>() const requires(!std::is_const_v<T>) { return {{plane[0], plane[1], plane[2]}}; }
 };
 
 /// Owner of three planes of one size.

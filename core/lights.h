@@ -12,7 +12,8 @@ namespace core {
 
 inline constexpr std::uint32_t kNoLight = 0xffffffffu;
 
-/// A point on a light. uv are uniform numbers that a triangle maps to barycentric coordinates; unused by punctual lights.
+/// A point on a light. uv are uniform numbers that a triangle maps to barycentric coordinates; unused by punctual
+/// lights.
 struct LightSample {
   std::uint32_t light = kNoLight;
   vec2 uv{0};
@@ -22,7 +23,7 @@ struct LightSample {
 /// An emissive triangle at an instant: one cache line.
 struct TriangleLight {
   vec3 origin{0}, edge1{0}, edge2{0};
-  vec3 radiance{0};              ///< emission factor times flicker; a texture multiplies it
+  vec3 radiance{0};                      ///< emission factor times flicker; a texture multiplies it
   std::uint32_t mesh = 0, triangle = 0;  ///< for texture coordinates
   float area = 0;
   std::uint32_t flags = 0;  ///< kDoubleSided, kTextured
@@ -40,15 +41,16 @@ struct PunctualState {
 
 /// Light arriving at a point from a LightSample.
 struct Incident {
-  vec3 direction{0};        ///< unit, towards the light
-  float distance = 0;       ///< infinity for directional lights
-  vec3 radiance{0};         ///< L_e (triangles), intensity with cone (point, spot), irradiance (directional)
-  float geometry = 0;       ///< cos_light / d^2 (triangles), 1 / d^2 (point, spot), 1 (directional)
+  vec3 direction{0};   ///< unit, towards the light
+  float distance = 0;  ///< infinity for directional lights
+  vec3 radiance{0};    ///< L_e (triangles), intensity with cone (point, spot), irradiance (directional)
+  float geometry = 0;  ///< cos_light / d^2 (triangles), 1 / d^2 (point, spot), 1 (directional)
   /// radiance * geometry; times f cos it is the integrand in the light's own measure (area or counting).
   vec3 flux() const { return geometry * radiance; }
 };
 
-/// Which kinds of light and texture a scene has; kernels are compiled for each set so that what is absent costs nothing.
+/// Which kinds of light and texture a scene has; kernels are compiled for each set so that what is absent costs
+/// nothing.
 struct LightFeatures {
   bool punctual = true, textured = true;
 };

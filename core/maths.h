@@ -35,7 +35,8 @@ inline bool isFinite(const vec3& v) { return std::isfinite(v.x) && std::isfinite
 
 inline float maxComponent(const vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 
-/// Orthonormal tangent frame around a unit normal. Source: Duff et al., "Building an Orthonormal Basis, Revisited" (2017).
+/// Orthonormal tangent frame around a unit normal. Source: Duff et al., "Building an Orthonormal Basis, Revisited"
+/// (2017).
 struct Frame {
   vec3 tangent, bitangent, normal;
   explicit Frame(const vec3& n) : normal(n) {

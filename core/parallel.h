@@ -6,6 +6,9 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include <algorithm>
+#include <cstdint>
+
 namespace core {
 
 /// Pixels on a tile's side; results never depend on it. 16 keeps a tile's surfaces in the second-level cache.

@@ -1,6 +1,6 @@
 // Counter-based random numbers: Philox 4x32-10, keyed by (seed, pass) and counted by (pixel, frame, sample, block).
-// Source: Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3" (SC 2011). No state is shared between threads, so
-// output never depends on the order in which pixels are visited.
+// Source: Salmon et al., "Parallel Random Numbers: As Easy as 1, 2, 3" (SC 2011). No state is shared between threads,
+// so output never depends on the order in which pixels are visited.
 #pragma once
 
 #include <array>

@@ -37,8 +37,8 @@ enum class Interpolation : std::uint8_t { linear, step, cubic };
 
 /// Keyframes of a value of N floats. cubic holds (in-tangent, value, out-tangent) per key, as glTF does.
 struct Track {
-  std::vector<float> times;   ///< seconds, ascending; empty = not animated
-  std::vector<vec4> values;   ///< xyz, or a quaternion as xyzw, or a scalar in x
+  std::vector<float> times;  ///< seconds, ascending; empty = not animated
+  std::vector<vec4> values;  ///< xyz, or a quaternion as xyzw, or a scalar in x
   Interpolation interpolation = Interpolation::linear;
   bool empty() const { return times.empty(); }
 };
@@ -93,8 +93,8 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<PunctualLight> punctual;
   std::vector<SceneCamera> cameras;
-  std::vector<Track> flickers;         ///< emission factors over time (scalar, x)
-  std::vector<std::string> warnings;   ///< what of the file is not supported, one line each
+  std::vector<Track> flickers;        ///< emission factors over time (scalar, x)
+  std::vector<std::string> warnings;  ///< what of the file is not supported, one line each
 };
 
 /// What about a scene can change between frames; decided once, so that nothing is paid for what a scene lacks.
@@ -107,13 +107,14 @@ SceneMotion motionOf(const Scene& scene);
 
 /// The scene at an instant.
 struct Pose {
-  double time = 0;                        ///< seconds
-  std::vector<mat4> nodeToWorld;          ///< per node
-  std::vector<float> materialEmission;    ///< per material, factor on emission (flicker)
+  double time = 0;                      ///< seconds
+  std::vector<mat4> nodeToWorld;        ///< per node
+  std::vector<float> materialEmission;  ///< per material, factor on emission (flicker)
   Camera camera;
 };
 
-/// Evaluates animation at time. camera: index into scene.cameras; a scene without one gets a camera that frames its bounds.
+/// Evaluates animation at time. camera: index into scene.cameras; a scene without one gets a camera that frames its
+/// bounds.
 Pose poseAt(const Scene& scene, double time, int camera = 0);
 
 /// Value of a track at time, clamped to its ends; quaternions are interpolated on the sphere.

@@ -9,8 +9,8 @@ namespace core {
 /// Surface seen by a pixel, world space. id = kNoId where nothing was hit.
 struct Surface {
   vec3 position{0};
-  float roughness = 1;       ///< perceptual, alpha = roughness^2
-  vec3 geometricNormal{0};   ///< unit, towards the viewer
+  float roughness = 1;      ///< perceptual, alpha = roughness^2
+  vec3 geometricNormal{0};  ///< unit, towards the viewer
   float metallic = 0;
   vec3 normal{0};            ///< unit shading normal, in the viewer's half space
   std::uint32_t id = kNoId;  ///< instance

@@ -1,0 +1,48 @@
+// How far a history is trusted: how it weights a fresh value, and how it forgets.
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+namespace twohistory {
+
+/// weight(n) = n^e, 0 where n = 0. frames: e = 0 ("unweighted"), samples: e = 1 ("weighted").
+enum class Weighting { frames, samples };
+
+/// decay: weight times amount every frame. relativeCap: weight at most amount times the fresh weight (ReSTIR's 20 M).
+/// absoluteCap: weight at most amount. none: everything is kept.
+enum class Forgetting { decay, relativeCap, absoluteCap, none };
+
+/// amount: decay in [0, 1], or a cap >= 0; unused by none.
+struct Policy {
+  Weighting weighting = Weighting::frames;
+  Forgetting forgetting = Forgetting::decay;
+  float amount = 0.95f;
+};
+
+/// A history heavier than this would no longer feel a fresh weight of 1 (a float stalls at 2^24), so it forgets the
+/// rest.
+template <class Real>
+inline constexpr Real kHeaviest = std::is_same_v<Real, float> ? Real(0x1p22) : Real(0x1p51);
+
+/// Weight of a fresh value made of n samples, n >= 0.
+template <class Real>
+Real freshWeight(Weighting weighting, Real n) {
+  if (!(n > 0)) return 0;
+  return weighting == Weighting::samples ? n : Real(1);
+}
+
+/// Factor in [0, 1] by which a history of weight w shrinks before a fresh weight arrives. Caps do not act where
+/// fresh = 0: Q times nothing would erase the history.
+/// Amount is a template of its own so that double bookkeeping can take a double decay.
+template <class Real, class Amount>
+Real forgetFactor(Forgetting forgetting, Amount amount, Real w, Real fresh) {
+  const auto capAt = [w](Real cap) { return w > cap ? cap / w : Real(1); };
+  Real factor = 1;
+  if (forgetting == Forgetting::decay) factor = static_cast<Real>(amount);
+  if (forgetting == Forgetting::relativeCap && fresh > 0) factor = capAt(static_cast<Real>(amount) * fresh);
+  if (forgetting == Forgetting::absoluteCap && fresh > 0) factor = capAt(static_cast<Real>(amount));
+  return std::min(factor, capAt(kHeaviest<Real>));
+}
+
+}  // namespace twohistory

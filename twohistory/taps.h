@@ -1,0 +1,42 @@
+// Where a pixel's history lies: up to four validated pixels of the previous frame.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace twohistory {
+
+/// pixel: row-major indices into the previous frame. b: bilinear weights of the valid taps, renormalised to sum 1;
+/// invalid taps have b = 0 and any valid index. All b = 0: no history (reset).
+struct Taps {
+  std::array<std::int32_t, 4> pixel{};
+  std::array<float, 4> b{};
+
+  bool valid() const { return b[0] + b[1] + b[2] + b[3] > 0; }
+};
+
+/// The one tap of a pixel that stays where it is.
+inline Taps stillTap(std::int32_t pixel) { return {{pixel, pixel, pixel, pixel}, {1, 0, 0, 0}}; }
+
+/// How values that cannot be mixed (reservoirs) choose one tap. Never looks at the values.
+enum class Choice { best, stochastic };
+
+/// One tap with b = 1. best: the largest b. stochastic: tap k with probability b_k, u uniform in [0, 1).
+inline Taps chooseTap(const Taps& taps, Choice choice, float u) {
+  if (!taps.valid()) return taps;
+  int chosen = 0;
+  if (choice == Choice::best) {
+    for (int k = 1; k < 4; ++k)
+      if (taps.b[k] > taps.b[chosen]) chosen = k;
+  } else {
+    float sum = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (taps.b[k] <= 0) continue;
+      chosen = k;
+      if (u < (sum += taps.b[k])) break;
+    }
+  }
+  return stillTap(taps.pixel[chosen]);
+}
+
+}  // namespace twohistory
