@@ -58,8 +58,8 @@ struct Recall {
   Ledger<K> gathered, now;
   Advance<K> change;
 
-  Recall(const Taps& taps, In<Ledger<K>> before, const std::array<Policy, K>& policies, float n)
-      : gathered(gather(taps, before)), change(advanceOf(gathered, policies, n)) {
+  Recall(const Taps& taps, In<Ledger<K>> before, const Policies<K>& policies, float n)
+      : gathered(gather<K, float>(taps, before)), change(advanceOf(gathered, policies, n)) {
     now = advance(gathered, change, n);
   }
   Step step(int j, core::ivec2 pixel, const Taps& taps, In<Ledger<K>> before, float n) const {
@@ -74,7 +74,7 @@ struct Recall {
 /// remembered values (anything with at(index), and store(x, y, value)); fresh: anything with load(x, y). All images
 /// have one size and no padding; before and now must not overlap.
 template <int K, class M, class Before, class Fresh, class Now>
-void accumulate(In<Taps> taps, In<float> n, const std::array<Policy, K>& policies, In<Ledger<K>> ledgerBefore,
+void accumulate(In<Taps> taps, In<float> n, const Policies<K>& policies, In<Ledger<K>> ledgerBefore,
                 ImageView<Ledger<K>> ledgerNow, const M& merge, const std::array<Before, K>& before, const Fresh& fresh,
                 const std::array<Now, K>& now, int tile = core::kDefaultTile) {
   CHECK_EQ(ledgerBefore.pitch, ledgerBefore.width);

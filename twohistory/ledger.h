@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "core/image.h"
 #include "twohistory/policy.h"
@@ -27,6 +28,10 @@ constexpr int pairIndex(int g, int h) {
   const int a = g < h ? g : h, b = g < h ? h : g;
   return a * K - a * (a - 1) / 2 + (b - a);
 }
+
+/// One policy a history.
+template <int K>
+using Policies = std::type_identity_t<std::array<Policy, K>>;
 
 template <int K, class Real = float>
 struct Ledger {
@@ -57,7 +62,7 @@ struct Advance {
 };
 
 template <int K, class Real>
-Advance<K, Real> advanceOf(const Ledger<K, Real>& gathered, const std::array<Policy, K>& policies, Real n) {
+Advance<K, Real> advanceOf(const Ledger<K, Real>& gathered, const Policies<K>& policies, Real n) {
   Advance<K, Real> a;
   for (int j = 0; j < K; ++j) {
     a.fresh[j] = freshWeight(policies[j].weighting, n);
@@ -85,14 +90,14 @@ Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Advance<K, Real>&
 }
 
 template <int K, class Real>
-Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const std::array<Policy, K>& policies, Real n) {
+Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Policies<K>& policies, Real n) {
   return advance(gathered, advanceOf(gathered, policies, n), n);
 }
 
 /// What the taps of the previous frame know. Weights and age sums are sums, so they mix with b; a pixel's power sums
 /// mix with b^1.5, between b^2 (independent taps) and b (fully dependent ones): measured, see docs/decisions.md.
 template <int K, class Real>
-Ledger<K, Real> gather(const Taps& taps, core::In<Ledger<K, Real>> before) {
+Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before) {
   Ledger<K, Real> sum;
   for (int k = 0; k < 4; ++k) {
     const Real b = taps.b[k];

@@ -17,7 +17,7 @@ enum class Forgetting { decay, relativeCap, absoluteCap, none };
 struct Policy {
   Weighting weighting = Weighting::frames;
   Forgetting forgetting = Forgetting::decay;
-  float amount = 0.95f;
+  double amount = 0.95;
 };
 
 /// A history heavier than this would no longer feel a fresh weight of 1 (a float stalls at 2^24), so it forgets the
@@ -34,9 +34,8 @@ Real freshWeight(Weighting weighting, Real n) {
 
 /// Factor in [0, 1] by which a history of weight w shrinks before a fresh weight arrives. Caps do not act where
 /// fresh = 0: Q times nothing would erase the history.
-/// Amount is a template of its own so that double bookkeeping can take a double decay.
-template <class Real, class Amount>
-Real forgetFactor(Forgetting forgetting, Amount amount, Real w, Real fresh) {
+template <class Real>
+Real forgetFactor(Forgetting forgetting, double amount, Real w, Real fresh) {
   const auto capAt = [w](Real cap) { return w > cap ? cap / w : Real(1); };
   Real factor = 1;
   if (forgetting == Forgetting::decay) factor = static_cast<Real>(amount);
