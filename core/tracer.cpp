@@ -57,8 +57,7 @@ RTCScene newScene(RTCDevice device, RTCBuildQuality quality) {
 
 }  // namespace
 
-/// One committed Embree scene a mesh. The arrays of core::Scene are shared, not copied: positions are padded by one
-/// vertex where Embree may read past the end.
+/// One committed Embree scene a mesh. Vertices are copied: Embree pads them for its vector loads.
 class MeshTrees {
  public:
   explicit MeshTrees(const Scene& scene) : device_(rtcNewDevice(nullptr)), trees_(scene.meshes.size()) {
