@@ -1,0 +1,215 @@
+#include "core/lights.h"
+
+#include <array>
+#include <optional>
+
+#include "core/check.h"
+#include "core/parallel.h"
+#include "core/texture.h"
+#include "core/texture_mean.h"
+
+namespace core {
+namespace {
+
+constexpr std::size_t kGrain = 4096;  // triangles a task
+constexpr float kLeastDirectional = 1.0f / 9, kMostDirectional = 0.5f;
+
+const Material& materialOf(const Scene& scene, const Instance& instance) {
+  return scene.materials[scene.meshes[instance.mesh].material];
+}
+
+std::array<vec2, 3> cornersOf(const Mesh& mesh, std::size_t triangle) {
+  if (mesh.uvs.empty()) return {};
+  const uvec3 t = mesh.triangles[triangle];
+  return {mesh.uvs[t.x], mesh.uvs[t.y], mesh.uvs[t.z]};
+}
+
+/// Uniform on the triangle of barycentric weights, continuous. Source: Heitz 2019.
+vec2 toBarycentric(vec2 u) {
+  return u.y > u.x ? vec2(0.5f * u.x, u.y - 0.5f * u.x) : vec2(u.x - 0.5f * u.y, 0.5f * u.y);
+}
+
+template <class Body>
+void forEachIndex(std::size_t count, Body&& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+struct Bounds {
+  vec3 low{kInfinity}, high{-kInfinity};
+  void add(const vec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
+  bool empty() const { return !(low.x <= high.x); }
+  vec3 corner(int i) const { return {(i & 1 ? high : low).x, (i & 2 ? high : low).y, (i & 4 ? high : low).z}; }
+};
+
+Bounds boundsOf(const Mesh& mesh) {
+  Bounds bounds;
+  for (const vec3& p : mesh.positions) bounds.add(p);
+  return bounds;
+}
+
+/// Mean texture colour over every triangle of a mesh.
+std::vector<vec3> textureMeans(const Mesh& mesh, const TextureMean& mean) {
+  std::vector<vec3> means(mesh.triangles.size());
+  forEachIndex(means.size(), [&](std::size_t i) { means[i] = mean.over(cornersOf(mesh, i)); });
+  return means;
+}
+
+}  // namespace
+
+struct Lights::Constants {
+  std::vector<std::vector<vec3>> textureMeans;  // per mesh; empty where emission has no texture
+  std::vector<Bounds> bounds;                   // per mesh; empty without directional lights
+
+  explicit Constants(const Scene& scene) : textureMeans(scene.meshes.size()) {
+    std::vector<std::optional<TextureMean>> means(scene.textures.size());
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+      const Material& material = scene.materials[scene.meshes[m].material];
+      if (!material.emits() || material.emissionTexture < 0) continue;
+      auto& mean = means[material.emissionTexture];
+      if (!mean) mean.emplace(scene.textures[material.emissionTexture]);
+      textureMeans[m] = core::textureMeans(scene.meshes[m], *mean);
+    }
+    const auto directional = [](const PunctualLight& l) { return l.type == PunctualLight::Type::directional; };
+    if (std::none_of(scene.punctual.begin(), scene.punctual.end(), directional)) return;
+    for (const Mesh& mesh : scene.meshes) bounds.push_back(boundsOf(mesh));
+  }
+
+  /// Squared radius of the sphere around the scene's bounding box.
+  float radius2(const Scene& scene, const Pose& pose) const {
+    Bounds all;
+    for (const Instance& instance : scene.instances) {
+      const Bounds& box = bounds[instance.mesh];
+      for (int i = 0; i < 8 && !box.empty(); ++i)
+        all.add(vec3(pose.nodeToWorld[instance.node] * vec4(box.corner(i), 1)));
+    }
+    const vec3 half = all.empty() ? vec3(1) : 0.5f * (all.high - all.low);
+    return dot(half, half);
+  }
+};
+
+Lights::Lights(const Scene& scene, const Pose& pose, const Lights* before) : scene_(&scene) {
+  const bool same = before && before->scene_ == &scene;
+  constants_ = same ? before->constants_ : std::make_shared<const Constants>(scene);
+  std::vector<float> power;
+  listTriangles(pose, power);
+  listPunctual(pose, power);
+  balanceDirectional(pose, power);
+  drawBy(power);
+}
+
+void Lights::listTriangles(const Pose& pose, std::vector<float>& power) {
+  const Scene& scene = *scene_;
+  firstOfInstance_.assign(scene.instances.size(), kNoLight);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Material& material = materialOf(scene, scene.instances[i]);
+    if (!material.emits()) continue;
+    firstOfInstance_[i] = static_cast<std::uint32_t>(count);
+    count += scene.meshes[scene.instances[i].mesh].triangles.size();
+    features_.textured |= material.emissionTexture >= 0;
+  }
+  triangles_.resize(count);
+  power.resize(count + scene.punctual.size());
+  tbb::parallel_for(std::size_t{0}, scene.instances.size(), [&](std::size_t i) {
+    if (firstOfInstance_[i] != kNoLight) fillTriangles(i, pose, power);
+  });
+}
+
+void Lights::fillTriangles(std::size_t i, const Pose& pose, std::span<float> power) {
+  const Instance& instance = scene_->instances[i];
+  const Mesh& mesh = scene_->meshes[instance.mesh];
+  const Material& material = scene_->materials[mesh.material];
+  const mat4& toWorld = pose.nodeToWorld[instance.node];
+  const vec3 radiance = material.emission * pose.materialEmission[mesh.material];
+  const std::vector<vec3>& means = constants_->textureMeans[instance.mesh];
+  const std::uint32_t flags = (material.doubleSided ? TriangleLight::kDoubleSided : 0) |
+                              (means.empty() ? 0 : TriangleLight::kTextured) |
+                              (determinant(glm::mat3(toWorld)) < 0 ? TriangleLight::kMirrored : 0);
+  const float sides = material.doubleSided ? 2.0f : 1.0f;
+  forEachIndex(mesh.triangles.size(), [&, first = firstOfInstance_[i]](std::size_t t) {
+    const auto corner = [&](std::uint32_t v) { return vec3(toWorld * vec4(mesh.positions[v], 1)); };
+    const uvec3 v = mesh.triangles[t];
+    const vec3 a = corner(v.x), b = corner(v.y), c = corner(v.z);
+    TriangleLight& light = triangles_[first + t];
+    light = {a, b - a, c - a, radiance, static_cast<std::uint32_t>(instance.mesh), static_cast<std::uint32_t>(t),
+             0, flags};
+    const vec3 mean = means.empty() ? radiance : radiance * means[t];
+    power[first + t] = sides * 0.5f * length(light.cross2Area()) * luminance(mean);
+  });
+}
+
+/// Total intensity over pi, the unit of area times radiance; directional lights come in balanceDirectional().
+void Lights::listPunctual(const Pose& pose, std::vector<float>& power) {
+  features_.punctual = !scene_->punctual.empty();
+  for (std::size_t i = 0; i < scene_->punctual.size(); ++i) {
+    const PunctualLight& light = scene_->punctual[i];
+    const mat4& toWorld = pose.nodeToWorld[light.node];
+    const float inner = std::cos(light.innerAngle), outer = std::cos(light.outerAngle);
+    punctual_.push_back({light.type, vec3(toWorld[3]), -normalize(vec3(toWorld[2])), light.intensity, inner, outer});
+    const float directions = light.type == PunctualLight::Type::spot ? 2 - inner - outer : 4.0f;
+    power[triangles_.size() + i] = directions * luminance(light.intensity);
+  }
+}
+
+void Lights::balanceDirectional(const Pose& pose, std::vector<float>& power) const {
+  if (constants_->bounds.empty()) return;
+  const float radius2 = constants_->radius2(*scene_, pose);
+  double local = 0, directional = 0;
+  for (std::size_t i = 0; i < power.size(); ++i) {
+    const bool infinite =
+        i >= triangles_.size() && punctual_[i - triangles_.size()].type == PunctualLight::Type::directional;
+    if (infinite) power[i] = radius2 * luminance(punctual_[i - triangles_.size()].intensity);
+    (infinite ? directional : local) += power[i];
+  }
+  if (!(local > 0 && directional > 0)) return;
+  const double share = directional / (local + directional);
+  const double wanted = std::clamp<double>(share, kLeastDirectional, kMostDirectional);
+  const auto scale = static_cast<float>(wanted / (1 - wanted) * local / directional);
+  for (std::size_t i = 0; i < punctual_.size(); ++i)
+    if (punctual_[i].type == PunctualLight::Type::directional) power[triangles_.size() + i] *= scale;
+}
+
+void Lights::drawBy(const std::vector<float>& power) {
+  for (std::size_t i = 0; i < power.size(); ++i)
+    if (!(power[i] >= 0 && std::isfinite(power[i])))
+      throw Error(scene_->name, "light " + std::to_string(i) + " has no finite power",
+                  "check its emission, size and transform");
+  table_ = AliasTable(power);
+  if (table_.empty()) return;
+  forEachIndex(triangles_.size(),
+               [&](std::size_t i) { triangles_[i].probability = table_.probability(static_cast<std::uint32_t>(i)); });
+}
+
+LightSample Lights::sample(Rng& rng) const {
+  if (table_.empty()) return {};
+  const std::uint32_t binBits = rng.bits(), keepBits = rng.bits();
+  const std::uint32_t light = table_.sample(binBits, keepBits);
+  return {light, toBarycentric(rng.uniform2())};
+}
+
+Incident Lights::fromPunctual(const PunctualState& light, const vec3& position) const {
+  if (light.type == PunctualLight::Type::directional) return {-light.direction, kInfinity, light.intensity, 1};
+  const vec3 offset = light.position - position;
+  const float distance2 = dot(offset, offset);
+  if (!(distance2 > 0)) return {};
+  const float distance = std::sqrt(distance2);
+  Incident result{offset / distance, distance, light.intensity, 1 / distance2};
+  if (light.type == PunctualLight::Type::spot) {
+    const float cosine = -dot(result.direction, light.direction);
+    const float range = std::max(light.cosInner - light.cosOuter, 1e-3f);
+    const float fallOff = std::clamp((cosine - light.cosOuter) / range, 0.0f, 1.0f);
+    result.radiance *= fallOff * fallOff;  // KHR_lights_punctual, "Inner and Outer Cone Angles"
+  }
+  return result;
+}
+
+vec3 Lights::emissionTexel(const TriangleLight& light, vec2 b) const {
+  const Mesh& mesh = scene_->meshes[light.mesh];
+  const Texture& texture = scene_->textures[scene_->materials[mesh.material].emissionTexture];
+  const std::array<vec2, 3> uv = cornersOf(mesh, light.triangle);
+  return vec3(sampleSrgb(texture, (1 - b.x - b.y) * uv[0] + b.x * uv[1] + b.y * uv[2]));
+}
+
+}  // namespace core
