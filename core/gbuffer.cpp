@@ -40,7 +40,7 @@ vec3 mappedNormal(const View& view, const Mesh& mesh, const Material& material, 
   tangent /= std::sqrt(length2);
   vec3 bitangent = cross(v.normal, tangent);
   if (dot(bitangent, glm::mat3(state.toWorld) * ((e2 * d1.x - e1 * d2.x) / determinant)) < 0) bitangent = -bitangent;
-  // v runs down in texture space, the map's green axis points up: glTF says bitangent = along increasing v of the map.
+  // glTF's v runs down the image, the map's green axis up it: hence the minus below.
   const vec3 m = 2.0f * vec3(sampleLinear(view.scene.textures[material.normalTexture], v.uv)) - 1.0f;
   const vec3 n = m.x * material.normalScale * tangent - m.y * material.normalScale * bitangent + m.z * v.normal;
   return dot(n, n) > 0 ? normalize(n) : v.normal;

@@ -1,0 +1,25 @@
+// Geometric edge-stopping weights, shared by à-trous filtering, lag regression's window means and gradient filters.
+// Source: SVGF (Schied et al. 2017), equations (3) and (4).
+#pragma once
+
+#include "core/guide.h"
+
+namespace core {
+
+/// weight(p, q) = factor * exp(-exponent):
+///   [SVGF (3)] exponent = |z_p - z_q| / ((depthScale slope_p + relativeDepth z_p) |p - q|)
+///   [SVGF (4)] factor   = max(0, n_p . n_q)^128, 0 where the instances differ
+struct EdgeParameters {
+  float depthScale = 1;         ///< sigma_z
+  float relativeDepth = 1e-3f;  ///< keeps fronto-parallel planes together
+};
+
+/// Both terms for pixels x in [x0, x1) of row y against (x + dx, y + dy), which must lie inside the image.
+/// exponent, factor: arrays whose element 0 belongs to x0.
+void edgeTerms(const Guide& guide, const EdgeParameters& parameters, int y, int dx, int dy, int x0, int x1,
+               float* exponent, float* factor);
+
+/// The weight of one pair of pixels; q must lie inside the image.
+float edgeWeight(const Guide& guide, const EdgeParameters& parameters, ivec2 p, ivec2 q);
+
+}  // namespace core

@@ -1,0 +1,87 @@
+// Every blend of two (or three) histories over an image. See combination.h for the formulas.
+#pragma once
+
+#include <array>
+
+#include "core/edge_weight.h"
+#include "core/guide.h"
+#include "twohistory/ledger.h"
+
+namespace twohistory {
+
+enum class BlendMode {
+  first,       ///< pair[0] alone ("unweighted" and "weighted" are this with one history)
+  published,   ///< p as the slides' headline prints it
+  optimal,     ///< p_opt: least variance under constant truth
+  seed,        ///< p_opt, then towards pair[0] where the gradient is large, as its author shipped it
+  seedSlide,   ///< the same with the slides' gradient
+  consistent,  ///< one closed form in place of p and q
+  lag,         ///< lag regression: least estimated true error; the flagship
+  lagAll,      ///< lag regression over all K histories
+  oracle,      ///< best p in [0, 1] against the reference; p_opt in frames without one
+};
+
+/// predicted: from the power sums. safe: the largest of that and two measured ones (spread in the window, spread of
+/// four quadrant means).
+enum class NoiseEstimate { predicted, safe };
+
+struct BlendParameters {
+  BlendMode mode = BlendMode::first;
+  std::array<int, 2> pair{0, 1};         ///< histories; p weighs the first
+  float lowest = -0.5f, highest = 1.5f;  ///< range of p in `lag`; lowest also bounds `lagAll`
+  int radius = 3;                        ///< of the window that estimates drift, pixels
+  NoiseEstimate noise = NoiseEstimate::predicted;
+  core::EdgeParameters edges;
+};
+
+template <class V>
+void describe(V& v, BlendParameters& p) {
+  v.choice("mode", p.mode,
+           {{"first", BlendMode::first},
+            {"published", BlendMode::published},
+            {"optimal", BlendMode::optimal},
+            {"seed", BlendMode::seed},
+            {"seedSlide", BlendMode::seedSlide},
+            {"consistent", BlendMode::consistent},
+            {"lag", BlendMode::lag},
+            {"lagAll", BlendMode::lagAll},
+            {"oracle", BlendMode::oracle}},
+           "how the histories become one image");
+  v("first", p.pair[0], "index of the history that p weighs", 0.0, 2.0);
+  v("second", p.pair[1], "index of the other history", 0.0, 2.0);
+  v("lowest", p.lowest, "least p (lag) or least weight of any history (lagAll)", -4.0, 0.0);
+  v("highest", p.highest, "largest p (lag)", 1.0, 5.0);
+  v("radius", p.radius, "radius in pixels of the window that estimates drift", 0.0, 8.0);
+  v.choice("noise", p.noise, {{"predicted", NoiseEstimate::predicted}, {"safe", NoiseEstimate::safe}},
+           "how the noise of the histories' mean difference is estimated");
+}
+
+/// What a blend reads. All images have one size; colours are after the first filter level.
+template <int K>
+struct Histories {
+  std::array<core::PlanesView<const float>, K> colour;
+  core::In<Ledger<K>> ledger;
+  core::In<float> sampleVariance;          ///< s2: luminance variance of one sample
+  core::In<float> variance;                ///< luminance variance of history 0 after the filter
+  core::PlanesView<const float> gradient;  ///< seed, seedSlide: change per frame; else empty
+  core::PlanesView<const float> target;    ///< oracle: the demodulated truth; else empty
+};
+
+/// Planes that the window estimate needs; kept by the caller so that no frame allocates.
+struct BlendScratch {
+  core::Image<float> difference, noise;
+  void fit(int width, int height) {
+    if (difference.width() == width && difference.height() == height) return;
+    difference = core::Image<float>(width, height);
+    noise = core::Image<float>(width, height);
+  }
+};
+
+/// Blends every pixel into out, and writes the luminance variance that remains. K = 1, 2 or 3.
+/// weight: p where the blend has one (else 1); may be empty.
+template <int K>
+void blend(const Histories<K>& histories, const core::Guide& guide, const BlendParameters& parameters,
+           BlendScratch& scratch, core::PlanesView<float> out, core::ImageView<float> variance,
+           core::ImageView<float> weight = {});
+
+}  // namespace twohistory

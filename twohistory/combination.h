@@ -1,0 +1,140 @@
+// Convex and extrapolating combinations of histories: the closed forms behind every blend, one pixel at a time.
+//
+// X_1, X_2 are two histories of one input with Cov(X_g, X_h) = s2 C_gh / (W_g W_h) ([ledger 4]). p always weighs the
+// history named first: blend = p X_1 + (1 - p) X_2.
+// Sources: [Tu24] "First phase of blending" (its headline formula is kept as publishedWeight for reproduction); lag
+// regression and the consistent blend are this project's, derived in docs/decisions.md.
+#pragma once
+
+#include <array>
+
+#include "twohistory/ledger.h"
+
+namespace twohistory {
+
+/// Variances and covariance of two histories in units of one sample's variance.
+template <class Real = float>
+struct PairCovariance {
+  Real first, second, cross;
+
+  Real gainOfFirst() const { return second - cross; }  ///< A: what moving to the first history saves
+  Real gainOfSecond() const { return first - cross; }  ///< B
+  /// Var(X_1 - X_2), >= 0.
+  Real difference() const { return std::max(Real(0), gainOfFirst() + gainOfSecond()); }
+  /// Variance of p X_1 + (1 - p) X_2, never negative through rounding.
+  Real blend(Real p) const {
+    const Real q = 1 - p;
+    return std::max(Real(0), q * q * second + 2 * p * q * cross + p * p * first);
+  }
+};
+
+template <int K, class Real>
+PairCovariance<Real> pairOf(const Ledger<K, Real>& ledger, int first, int second) {
+  return {ledger.covariance(first, first), ledger.covariance(second, second), ledger.covariance(first, second)};
+}
+/// The same for a mean over a neighbourhood, whose noise mixing taps does not reduce.
+template <int K, class Real>
+PairCovariance<Real> meanPairOf(const Ledger<K, Real>& ledger, int first, int second) {
+  return {ledger.meanCovariance(first, first), ledger.meanCovariance(second, second),
+          ledger.meanCovariance(first, second)};
+}
+
+/// [blend opt] p_opt = A / (A + B) with A = V_2 - C, B = V_1 - C: least variance with p in [0, 1]. No cancelling
+/// denominator: 1 where B <= 0 (also where both histories are the same), 0 where A <= 0.
+template <class Real>
+Real leastVarianceWeight(const PairCovariance<Real>& c) {
+  const Real a = c.gainOfFirst(), b = c.gainOfSecond();
+  if (!(b > 0)) return 1;
+  if (!(a > 0)) return 0;
+  return a / (a + b);
+}
+
+/// [blend published] p as the slides' headline prints it, S_0 and S_1 in each other's places; for reproduction only.
+/// first must be the frames history, second the samples history. 1 where the printed denominator is 0.
+template <int K, class Real>
+Real publishedWeight(const Ledger<K, Real>& l, int first, int second) {
+  const Real wu = l.weight[first], ww = l.weight[second];
+  const Real sMinus = l.pixelSums[pairIndex<K>(first, first)], s0 = l.pixelSums[pairIndex<K>(first, second)],
+             s1 = l.pixelSums[pairIndex<K>(second, second)];
+  const Real denominator = wu * wu * s1 - 2 * wu * ww * s1 + ww * ww * sMinus;
+  if (denominator == 0) return 1;
+  return std::clamp((wu * wu * s0 - wu * ww * s1) / denominator, Real(0), Real(1));
+}
+
+/// [blend consistent] p = (A + kappa) / (A + B + kappa): least variance plus squared difference from the first
+/// history's bias. kappa = max(0, D^2 - noise^2) / s2 >= 0, may be infinite.
+template <class Real>
+Real consistentWeight(const PairCovariance<Real>& c, Real kappa) {
+  const Real a = std::max(Real(0), c.gainOfFirst()), b = std::max(Real(0), c.gainOfSecond());
+  if (!(b > 0) || !(kappa < std::numeric_limits<Real>::infinity())) return 1;
+  return (a + kappa) / (a + b + kappa);
+}
+
+/// Squared drift per frame in units of s2 [blend G2]: max(0, D^2 - noise2) / (a_1 - a_2)^2, 0 where the ages differ by
+/// less than 1e-3 frames. excess = max(0, D^2 - noise2) / s2.
+template <class Real>
+Real squaredDrift(Real excess, Real firstAge, Real secondAge) {
+  const Real gap = firstAge - secondAge;
+  return std::abs(gap) < Real(1e-3) ? Real(0) : excess / (gap * gap);
+}
+
+/// [blend lag, two] p = (M_22 - M_12) / (M_11 - 2 M_12 + M_22) with M_jk = C_jk + g a_j a_k, written without
+/// cancelling terms; g = G2 / s2. Not clamped. 1 where the denominator vanishes against the variances.
+template <class Real>
+Real lagWeight(const PairCovariance<Real>& c, Real firstAge, Real secondAge, Real g) {
+  const Real gap = secondAge - firstAge;
+  const Real numerator = c.gainOfFirst() + g * secondAge * gap;
+  const Real denominator = c.gainOfFirst() + c.gainOfSecond() + g * gap * gap;
+  return denominator > Real(1e-6) * (c.first + c.second) ? numerator / denominator : Real(1);
+}
+
+/// [blend lag] lambda = M^-1 1 / (1' M^-1 1) for K histories, M_jk = C_jk + g a_j a_k, by Cholesky with a ridge of 1e-4
+/// of the mean diagonal; then shrunk towards the best single history until no weight lies below lowest (<= 0). Without
+/// that limit three histories were unstable (up to 15 times the error of one).
+template <int K, class Real>
+std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowest) {
+  std::array<std::array<Real, K>, K> m{};
+  Real trace = 0;
+  int best = 0;
+  for (int j = 0; j < K; ++j)
+    for (int k = 0; k < K; ++k) m[j][k] = ledger.covariance(j, k) + g * ledger.age(j) * ledger.age(k);
+  for (int j = 0; j < K; ++j) {
+    trace += m[j][j];
+    if (m[j][j] < m[best][best]) best = j;
+  }
+  std::array<Real, K> lambda{};
+  lambda[best] = 1;
+  const Real ridge = Real(1e-4) * trace / K;
+  if (!(ridge > 0)) return lambda;
+
+  std::array<std::array<Real, K>, K> l{};  // m + ridge = l l'
+  for (int j = 0; j < K; ++j) {
+    for (int k = 0; k <= j; ++k) {
+      Real sum = m[j][k] + (j == k ? ridge : Real(0));
+      for (int i = 0; i < k; ++i) sum -= l[j][i] * l[k][i];
+      l[j][k] = j == k ? std::sqrt(std::max(sum, ridge)) : sum / l[k][k];
+    }
+  }
+  std::array<Real, K> x{};
+  for (int j = 0; j < K; ++j) {
+    x[j] = 1;
+    for (int i = 0; i < j; ++i) x[j] -= l[j][i] * x[i];
+    x[j] /= l[j][j];
+  }
+  Real total = 0;
+  for (int j = K - 1; j >= 0; --j) {
+    for (int i = j + 1; i < K; ++i) x[j] -= l[i][j] * x[i];
+    total += x[j] /= l[j][j];
+  }
+  if (!(total > 0)) return lambda;
+
+  Real keep = 1;  // share of the solution that stays within the limit
+  for (int j = 0; j < K; ++j) {
+    const Real target = j == best ? Real(1) : Real(0), wanted = x[j] / total;
+    if (wanted < lowest) keep = std::min(keep, (lowest - target) / (wanted - target));
+  }
+  for (int j = 0; j < K; ++j) lambda[j] += keep * (x[j] / total - lambda[j]);
+  return lambda;
+}
+
+}  // namespace twohistory
