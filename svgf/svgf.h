@@ -1,0 +1,101 @@
+// Spatiotemporal variance-guided filtering over K histories of demodulated radiance: parameters, what is kept between
+// frames, and the passes in the order in which a frame calls them.
+// Sources: SVGF (Schied et al. 2017); [Tu24] "Two-history Spatio-temporal Filter" for where the histories part and
+// meet.
+#pragma once
+
+#include <array>
+#include <utility>
+
+#include "core/edge_weight.h"
+#include "core/guide.h"
+#include "svgf/moments.h"
+#include "twohistory/history.h"
+
+namespace svgf {
+
+using core::Guide;
+using core::Image;
+using core::ImageView;
+using core::In;
+using core::Planes;
+using core::PlanesView;
+using twohistory::Ledger;
+using twohistory::Taps;
+
+struct FilterParameters {
+  int levels = 2;       ///< à-trous levels in all; the first one's result is fed back
+  float phiColour = 4;  ///< [SVGF (5)] sigma_l, times the standard deviation of luminance
+  core::EdgeParameters edges;
+  float momentsDecay = 0.95f;  ///< of the luminance mean that innovations are measured against
+  float spatialBelow = 4;      ///< fewer innovations than this: variance from the neighbourhood
+  int spatialRadius = 3;       ///< of that neighbourhood, pixels
+};
+
+template <class V>
+void describe(V& v, FilterParameters& p) {
+  v("levels", p.levels, "a-trous levels, the first of which is fed back", 1.0, 5.0);
+  v("phiColour", p.phiColour, "luminance edge weight, in standard deviations", 1e-3, 1e6);
+  v("depthScale", p.edges.depthScale, "depth edge weight, in depth slopes", 1e-6, 1e6);
+  v("relativeDepth", p.edges.relativeDepth, "depth edge weight, in depths a pixel, added", 0.0, 1.0);
+  v("momentsDecay", p.momentsDecay, "decay a frame of the luminance mean that variance is measured against", 0.0, 1.0);
+  v("spatialBelow", p.spatialBelow, "innovations below which variance comes from the neighbourhood", 1.0, 20.0);
+  v("spatialRadius", p.spatialRadius, "radius of that neighbourhood in pixels", 1.0, 8.0);
+}
+
+/// What one variant keeps from frame to frame. Index [now] is written this frame, [1 - now] was written before.
+template <int K>
+struct FilterState {
+  FilterState(int width, int height);
+
+  int now = 0;
+  std::array<Image<Ledger<K>>, 2> ledger;
+  std::array<Image<Ledger<1>>, 2> momentsLedger;
+  std::array<Image<Moments>, 2> moments;
+  std::array<Planes, K> history;            ///< after the first level: fed back, and blended
+  std::array<Planes, K> accumulated;        ///< before it
+  Image<float> samples;                     ///< sample counts after bad input was taken out
+  Image<float> sampleVariance;              ///< s2 a pixel
+  Image<float> variance, filteredVariance;  ///< of history 0's luminance, before and after a level
+  Image<float> luminance, tolerance;        ///< what the luminance edge weight reads
+
+  std::array<PlanesView<const float>, K> historyViews() const;
+  void swapFrames() { now = 1 - now; }
+};
+
+/// Copies sample counts, with 0 where radiance is not finite: such a pixel is a frame without samples.
+/// Returns how many pixels were dropped.
+std::int64_t dropBadSamples(PlanesView<const float> radiance, In<float> n, ImageView<float> out);
+
+/// Carries all K colour histories and the moments through one frame (the temporal filter).
+template <int K>
+void accumulate(const FilterParameters& parameters, const std::array<twohistory::Policy, K>& policies, In<Taps> taps,
+                PlanesView<const float> radiance, FilterState<K>& state);
+
+/// s2 from innovations or, where they are few, from the neighbourhood; history 0's variance from it. Pixels that have
+/// never seen a sample take their colours from neighbours that have (weight 0: the next sample replaces them).
+template <int K>
+void estimateVariance(const FilterParameters& parameters, const Guide& guide, FilterState<K>& state);
+
+/// First à-trous level: one set of weights, from history 0, filters all K histories, so that their covariances stay in
+/// proportion. Result in state.history and state.filteredVariance.
+template <int K>
+void filterHistories(const FilterParameters& parameters, const Guide& guide, FilterState<K>& state);
+
+/// Images that the further levels go through.
+struct LevelBuffers {
+  LevelBuffers(int width, int height)
+      : colour{Planes(width, height), Planes(width, height)},
+        variance{Image<float>(width, height), Image<float>(width, height)},
+        luminance(width, height),
+        tolerance(width, height) {}
+  std::array<Planes, 2> colour;
+  std::array<Image<float>, 2> variance;
+  Image<float> luminance, tolerance;
+};
+
+/// À-trous levels 2 .. parameters.levels of the blended image in buffers.colour[0], with its variance in
+/// buffers.variance[0]. Returns the index of the buffers that hold the result.
+int filterFurther(const FilterParameters& parameters, const Guide& guide, LevelBuffers& buffers);
+
+}  // namespace svgf
