@@ -124,8 +124,8 @@ void requireFinite(const Colour& image, const std::string& name) {
 
 double trimmedMean(std::vector<double> values, double fraction) {
   if (values.empty()) return kNaN;
-  const auto dropped = static_cast<std::size_t>(std::floor(fraction * static_cast<double>(values.size())));
-  const std::size_t kept = values.size() - dropped;
+  const double share = std::ceil(fraction * static_cast<double>(values.size()) - 1e-9);
+  const std::size_t kept = values.size() - std::min(values.size() - 1, static_cast<std::size_t>(std::max(0.0, share)));
   std::sort(values.begin(), values.end());
   const double sum = core::deterministicSum(static_cast<std::int64_t>(kept), [&](std::int64_t i) { return values[i]; });
   return sum / static_cast<double>(kept);

@@ -52,7 +52,7 @@ class Comparison {
 /// Throws core::Error that names the first pixel (in reading order) with a value that is not finite.
 void requireFinite(const Colour& image, const std::string& name);
 
-/// Mean of `values` without the largest `fraction` of them (rounded down to whole values); NaN if empty.
+/// Mean of `values` without the largest `fraction` of them, rounded up to whole values but never all; NaN if empty.
 double trimmedMean(std::vector<double> values, double fraction);
 
 }  // namespace experiments
