@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/files.h"
+#include "experiments/json_text.h"
 #include "experiments/names.h"
 #include "experiments/summary.h"
 
@@ -93,26 +94,6 @@ Results readParts(const Json& json) {
   return r;
 }
 
-/// Text of a value; bytes that are not UTF-8 (from a command line) are replaced.
-std::string dump(const Json& json, int indent = -1) {
-  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
-}
-
-/// One element of a list a line: long lists stay readable and diffs small.
-std::string prettyText(const Json& json) {
-  std::string text = "{";
-  for (const auto& [key, value] : json.items()) {
-    text += (text.size() > 1 ? ",\n" : "\n") + dump(key) + ": ";
-    if (!value.is_array() || value.empty()) {
-      text += dump(value, 2);
-      continue;
-    }
-    for (std::size_t i = 0; i < value.size(); ++i) text += (i ? ",\n  " : "[\n  ") + dump(value[i]);
-    text += "\n]";
-  }
-  return text + "\n}\n";
-}
-
 std::string csvField(const std::string& text) {
   if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -184,7 +165,7 @@ Results resultsFromJson(const Json& json, const std::string& where) {
 }
 
 void saveResults(const Results& results, const std::filesystem::path& folder) {
-  core::writeFileAtomically(folder / "results.json", prettyText(resultsJson(results)));
+  core::writeFileAtomically(folder / "results.json", listedText(resultsJson(results)));
   core::writeFileAtomically(folder / "results.csv", resultsCsv(results));
 }
 

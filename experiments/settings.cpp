@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <set>
+
+#include "core/files.h"
 
 namespace experiments {
 
@@ -119,11 +120,13 @@ Json parseJson(const std::string& text, const std::string& where) {
 }
 
 Json readJson(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream || stream.bad())
-    throw core::UsageError(file, "cannot be read", "name an existing JSON file that you may read");
-  return parseJson(text, file);
+  try {
+    return parseJson(core::readFile(file), file);
+  } catch (const core::UsageError&) {
+    throw;
+  } catch (const core::Error& e) {
+    throw core::UsageError("configuration", e.what(), "name a JSON file that you may read");
+  }
 }
 
 void applyAssignment(Json& config, const std::string& assignment) {

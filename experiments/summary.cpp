@@ -8,6 +8,7 @@
 #include <map>
 #include <tuple>
 
+#include "experiments/json_text.h"
 #include "experiments/names.h"
 
 namespace experiments {
@@ -86,8 +87,6 @@ std::vector<Ratio> ratiosTo(const std::vector<Row>& rows, const std::string& bas
   }
   return ratios;
 }
-
-Json numberOrNull(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 
 Json summaryJson(const Summary& s) {
   return {{"scene", s.scene},

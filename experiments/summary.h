@@ -29,8 +29,6 @@ std::vector<Ratio> ratiosTo(const std::vector<Row>& rows, const std::string& bas
 
 Json summaryJson(const Summary& summary);
 Json ratioJson(const Ratio& ratio);
-/// JSON has no NaN: null stands for it.
-Json numberOrNull(double x);
 
 /// Terminal table of one metric in one scene: a line per variant, a column per region: mean +- half interval, and in
 /// parentheses the ratio to the baseline.
