@@ -1,0 +1,111 @@
+#include "experiments/predict.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "experiments/json_text.h"
+#include "twohistory/combination.h"
+
+namespace experiments {
+
+using twohistory::Weighting;
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kFewest = 1e-6, kMost = 1e9;  ///< samples in one frame, beyond 0
+
+constexpr int kFrames = 0, kSamples = 1;  ///< histories of the pair
+int historyOf(Weighting w) { return w == Weighting::frames ? kFrames : kSamples; }
+
+double parseCount(const std::string& word, const std::string& where) {
+  double n = kNaN;
+  std::size_t used = 0;
+  try {
+    n = std::stod(word, &used);
+  } catch (const std::exception&) {
+    used = 0;
+  }
+  if (used == word.size() && (n == 0 || (n >= kFewest && n <= kMost))) return std::abs(n);
+  throw core::UsageError(where, fmt::format("\"{}\" is not a sample count", word.substr(0, 40)),
+                         fmt::format("give 0 or numbers from {:g} to {:g}", kFewest, kMost));
+}
+
+}  // namespace
+
+Prediction::Prediction(double decay) : decay_(decay) {
+  if (!(decay >= 0 && decay <= 1))
+    throw core::UsageError("--decay", fmt::format("{} is outside [0, 1]", decay), "give the share kept every frame");
+}
+
+void Prediction::advance(double n) {
+  const double fresh[] = {twohistory::freshWeight(Weighting::frames, n),
+                          twohistory::freshWeight(Weighting::samples, n)};
+  twohistory::Advance<2, double> change;
+  for (int j = 0; j < 2; ++j) {
+    change.fresh[j] = fresh[j];
+    change.factor[j] = twohistory::forgetFactor(twohistory::Forgetting::decay, decay_, ledger_.weight[j], fresh[j]);
+  }
+  ledger_ = twohistory::advance(ledger_, change, n);
+}
+
+double Prediction::weight(Weighting w) const { return ledger_.weight[historyOf(w)]; }
+
+double Prediction::powerSum(int exponent) const {
+  CHECK(exponent >= -1 && exponent <= 1);
+  // C_uu = S_-1, C_uw = S_0, C_ww = S_1 [ledger 3].
+  constexpr std::array<int, 3> pairs{twohistory::pairIndex<2>(kFrames, kFrames),
+                                     twohistory::pairIndex<2>(kFrames, kSamples),
+                                     twohistory::pairIndex<2>(kSamples, kSamples)};
+  return ledger_.pixelSums[pairs[exponent + 1]];
+}
+
+/// Weights so small that their squares vanish in double precision count as 0.
+bool Prediction::known() const {
+  return ledger_.covariance(kFrames, kFrames) > 0 && ledger_.covariance(kSamples, kSamples) > 0;
+}
+
+double Prediction::age(Weighting w) const { return weight(w) > 0 ? ledger_.age(historyOf(w)) : kNaN; }
+
+double Prediction::blendWeight() const {
+  return known() ? twohistory::leastVarianceWeight(twohistory::pairOf(ledger_, kFrames, kSamples)) : kNaN;
+}
+
+double Prediction::variance(Weighting w) const {
+  return known() ? ledger_.covariance(historyOf(w), historyOf(w)) : kNaN;
+}
+
+double Prediction::blendVariance() const {
+  return known() ? twohistory::pairOf(ledger_, kFrames, kSamples).blend(blendWeight()) : kNaN;
+}
+
+Json predictionJson(const Prediction& p, double n) {
+  constexpr auto frames = Weighting::frames, samples = Weighting::samples;
+  Json json;
+  json["n"] = n == std::floor(n) ? Json(static_cast<std::int64_t>(n)) : Json(n);
+  json["weight"] = {{"frames", p.weight(frames)}, {"samples", p.weight(samples)}};
+  json["power_sums"] = {{"-1", p.powerSum(-1)}, {"0", p.powerSum(0)}, {"1", p.powerSum(1)}};
+  json["age"] = {{"frames", numberOrNull(p.age(frames))}, {"samples", numberOrNull(p.age(samples))}};
+  json["p"] = numberOrNull(p.blendWeight());
+  json["variance"] = {{"unweighted", numberOrNull(p.variance(frames))},
+                      {"weighted", numberOrNull(p.variance(samples))},
+                      {"blend", numberOrNull(p.blendVariance())}};
+  return json;
+}
+
+std::vector<double> parseCounts(const std::string& text, const std::string& where) {
+  constexpr const char* kSeparators = ", \t\r\n";
+  std::vector<double> counts;
+  for (std::size_t end = 0;;) {
+    const std::size_t begin = text.find_first_not_of(kSeparators, end);
+    if (begin == std::string::npos) break;
+    end = std::min(text.find_first_of(kSeparators, begin), text.size());
+    counts.push_back(parseCount(text.substr(begin, end - begin), where));
+  }
+  if (counts.empty()) throw core::UsageError(where, "holds no sample counts", "give at least one, such as 1,1,8,0,1");
+  return counts;
+}
+
+}  // namespace experiments
