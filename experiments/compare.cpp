@@ -1,0 +1,44 @@
+#include "experiments/compare.h"
+
+#include <map>
+
+#include "core/exr.h"
+#include "experiments/json_text.h"
+
+namespace experiments {
+
+std::vector<std::pair<std::string, double>> namedMetrics(const Metrics& m) {
+  return {{"relMSE", m.relMse},     {"relMSE_trimmed", m.relMseTrimmed},
+          {"SSIM", m.ssim},         {"energy_ratio", m.energyRatio},
+          {"MSE", m.mse},           {"bias", m.bias},
+          {"max_error", m.maxError}};
+}
+
+std::string metricMeaning(const std::string& name) {
+  static const std::map<std::string, std::string> meanings{
+      {"relMSE",
+       "mean over pixels and channels of (y - r)\u00b2 / (r\u00b2 + 0.01); with two independent halves of the "
+       "reference the numerator is (y - r1)(y - r2), so that the reference's own noise does not count. "
+       "Lower is better"},
+      {"relMSE_trimmed", "relMSE without the 0.1 % of pixels that are worst. Lower is better"},
+      {"SSIM",
+       "structural similarity (Gaussian window 11x11, sigma 1.5) on x / (1 + x) with the sRGB curve, 5-pixel "
+       "border left out. Higher is better, 1 is equal"},
+      {"energy_ratio", "mean luminance over that of the reference. 1 is right"},
+      {"MSE", "mean of (y - r1)(y - r2). Lower is better"},
+      {"bias", "mean of y - r. 0 is right"},
+      {"max_error", "largest |y - r| of any channel. Lower is better"}};
+  const auto found = meanings.find(name);
+  return found == meanings.end() ? "" : found->second;
+}
+
+Json compareFiles(const std::string& referenceFile, const std::string& testFile, const std::string& layer) {
+  const core::Planes reference = core::rgbOf(core::readExr(referenceFile), layer, referenceFile);
+  const core::Planes test = core::rgbOf(core::readExr(testFile), layer, testFile);
+  const Comparison comparison(test.view(), Reference(reference.view()), testFile, referenceFile);
+  Json json;
+  for (const auto& [name, value] : namedMetrics(comparison.in())) json[name] = numberOrNull(value);
+  return json;
+}
+
+}  // namespace experiments
