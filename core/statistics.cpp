@@ -97,8 +97,7 @@ double incompleteBeta(double x, double a, double b) {
   CHECK(a > 0 && b > 0);
   if (!(x > 0)) return 0;
   if (x >= 1) return 1;
-  const double logFactor =
-      std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
+  const double logFactor = std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) + a * std::log(x) + b * std::log1p(-x);
   if (x < (a + 1) / (a + b + 2)) return std::exp(logFactor) * betaFraction(x, a, b) / a;
   return 1 - std::exp(logFactor) * betaFraction(1 - x, b, a) / b;
 }
