@@ -2,12 +2,14 @@
 #pragma once
 
 #include <tbb/blocked_range.h>
-#include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+
+#include "core/loop_order.h"
 
 namespace core {
 
@@ -18,7 +20,9 @@ inline constexpr int kDefaultTile = 16;
 template <class Body>
 void forEachPixel(int width, int height, Body&& body, int tile = kDefaultTile) {
   const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+  const LoopOrder loop;
   tbb::parallel_for(tbb::blocked_range<int>(0, columns * rows, 1), [&](const tbb::blocked_range<int>& range) {
+    const BodyOrder order;
     for (int t = range.begin(); t != range.end(); ++t) {
       const int x0 = (t % columns) * tile, y0 = (t / columns) * tile;
       for (int y = y0; y < std::min(y0 + tile, height); ++y)
@@ -31,7 +35,9 @@ void forEachPixel(int width, int height, Body&& body, int tile = kDefaultTile) {
 template <class Body>
 void forEachTile(int width, int height, Body&& body, int tile = kDefaultTile) {
   const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+  const LoopOrder loop;
   tbb::parallel_for(tbb::blocked_range<int>(0, columns * rows, 1), [&](const tbb::blocked_range<int>& range) {
+    const BodyOrder order;
     for (int t = range.begin(); t != range.end(); ++t) {
       const int x0 = (t % columns) * tile, y0 = (t / columns) * tile;
       body(x0, y0, std::min(x0 + tile, width), std::min(y0 + tile, height));
@@ -42,7 +48,9 @@ void forEachTile(int width, int height, Body&& body, int tile = kDefaultTile) {
 /// Calls body(y) once for every row.
 template <class Body>
 void forEachRow(int height, Body&& body) {
+  const LoopOrder loop;
   tbb::parallel_for(tbb::blocked_range<int>(0, height, 1), [&](const tbb::blocked_range<int>& range) {
+    const BodyOrder order;
     for (int y = range.begin(); y != range.end(); ++y) body(y);
   });
 }
@@ -50,13 +58,13 @@ void forEachRow(int height, Body&& body) {
 /// Sum of term(i) over [0, count) in double precision, in an order fixed by count alone.
 template <class Term>
 double deterministicSum(std::int64_t count, Term&& term) {
-  return tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<std::int64_t>(0, count, 1024), 0.0,
-      [&](const tbb::blocked_range<std::int64_t>& range, double sum) {
-        for (std::int64_t i = range.begin(); i != range.end(); ++i) sum += term(i);
-        return sum;
-      },
-      [](double a, double b) { return a + b; });
+  const auto part = [&](const tbb::blocked_range<std::int64_t>& range, double sum) {
+    const BodyOrder order;
+    for (std::int64_t i = range.begin(); i != range.end(); ++i) sum += term(i);
+    return sum;
+  };
+  const LoopOrder loop;
+  return tbb::parallel_deterministic_reduce(tbb::blocked_range<std::int64_t>(0, count, 1024), 0.0, part, std::plus<>{});
 }
 
 }  // namespace core
