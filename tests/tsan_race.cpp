@@ -1,4 +1,5 @@
-// Races on purpose inside a loop body: built with ThreadSanitizer only, where it must be reported in spite of tsan.supp.
+// Races on purpose inside a loop body: built with ThreadSanitizer only, where it must be reported in spite of
+// tsan.supp.
 #include <cstdio>
 
 #include "core/parallel.h"
