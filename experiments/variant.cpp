@@ -1,0 +1,93 @@
+#include "experiments/variant.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+
+namespace experiments {
+namespace {
+
+using twohistory::BlendMode;
+using twohistory::BlendParameters;
+using twohistory::Forgetting;
+using twohistory::NoiseEstimate;
+using twohistory::Policy;
+using twohistory::Weighting;
+
+Policy frames(double decay) { return {Weighting::frames, Forgetting::decay, decay}; }
+Policy samples(double decay) { return {Weighting::samples, Forgetting::decay, decay}; }
+
+Variant make(const char* name, std::vector<Policy> histories, BlendMode mode = BlendMode::first) {
+  Variant v;
+  v.name = name;
+  v.histories = std::move(histories);
+  v.blend.mode = mode;
+  return v;
+}
+
+Variant lag(const char* name, std::vector<Policy> histories, float lowest, float highest, NoiseEstimate noise) {
+  Variant v = make(name, std::move(histories), BlendMode::lag);
+  v.blend.lowest = lowest;
+  v.blend.highest = highest;
+  v.blend.noise = noise;
+  return v;
+}
+
+/// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one.
+std::vector<Variant> library() {
+  const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
+  Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
+  all.blend.mode = BlendMode::lagAll;
+  all.blend.pair = {0, 2};
+  return {make("none", {frames(0)}),
+          make("unweighted", {u}),
+          make("unweighted-96", {frames(0.96)}),
+          make("unweighted-98", {frames(0.98)}),
+          make("weighted", {w}),
+          make("published", {u, w}, BlendMode::published),
+          make("optimal", {u, w}, BlendMode::optimal),
+          make("seed", {u, w}, BlendMode::seed),
+          make("seed-slide", {u, w}, BlendMode::seedSlide),
+          make("consistent", {u, w}, BlendMode::consistent),
+          lag("lag-uw", {u, w}, -0.5f, 1.5f, NoiseEstimate::predicted),
+          lag("lag-wf", {w, f}, -0.5f, 1.5f, NoiseEstimate::predicted),
+          lag("lag-safe", {u, f}, -0.5f, 1.0f, NoiseEstimate::safe),
+          all,
+          make("oracle", {u, w}, BlendMode::oracle)};
+}
+
+}  // namespace
+
+std::vector<std::string> variantNames() {
+  std::vector<std::string> names;
+  for (const Variant& v : library()) names.push_back(v.name);
+  return names;
+}
+
+Variant variantByName(const std::string& name) {
+  std::string known;
+  for (const Variant& v : library()) {
+    if (v.name == name) return v;
+    known += (known.empty() ? "" : ", ") + v.name;
+  }
+  throw core::UsageError("variant '" + name + "'", "there is none of that name", "use one of " + known);
+}
+
+void requireConsistent(const Variant& v) {
+  const auto fail = [&](const std::string& what, const std::string& remedy) {
+    throw core::UsageError("variant '" + v.name + "'", what, remedy);
+  };
+  if (v.name.empty()) fail("it has no name", "give each variant a name of its own");
+  if (v.histories.empty() || v.histories.size() > 3)
+    fail(std::to_string(v.histories.size()) + " histories", "give one, two or three");
+  for (const Policy& p : v.histories)
+    if (p.forgetting == Forgetting::decay && p.amount > 1)
+      fail("a decay of " + std::to_string(p.amount), "a decay lies in [0, 1]");
+  const int count = static_cast<int>(v.histories.size());
+  const bool usesPair = v.blend.mode != BlendMode::first;
+  if (v.blend.pair[0] >= count || (usesPair && v.blend.pair[1] >= count))
+    fail("its blend names a history that it does not have", "blend.first and blend.second count histories from 0");
+  if (usesPair && v.blend.pair[0] == v.blend.pair[1]) fail("it blends a history with itself", "name two histories");
+}
+
+}  // namespace experiments

@@ -1,0 +1,54 @@
+// A variant: which histories a filter keeps and how it blends them. An experiment compares variants on the same frames.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "svgf/svgf.h"
+#include "twohistory/blend.h"
+#include "twohistory/policy.h"
+
+namespace twohistory {
+
+template <class V>
+void describe(V& v, Policy& p) {
+  v.choice("weighting", p.weighting, {{"frames", Weighting::frames}, {"samples", Weighting::samples}},
+           "weight of a fresh value: 1, or its sample count");
+  v.choice("forgetting", p.forgetting,
+           {{"decay", Forgetting::decay},
+            {"relativeCap", Forgetting::relativeCap},
+            {"absoluteCap", Forgetting::absoluteCap},
+            {"none", Forgetting::none}},
+           "how old values lose weight");
+  v("amount", p.amount, "decay a frame in [0, 1], or the cap", 0.0, 1e9);
+}
+
+}  // namespace twohistory
+
+namespace experiments {
+
+struct Variant {
+  std::string name;
+  std::vector<twohistory::Policy> histories{twohistory::Policy{}};  ///< 1 to 3
+  twohistory::BlendParameters blend;
+  svgf::FilterParameters filter;
+};
+
+template <class V>
+void describe(V& v, Variant& p) {
+  v("name", p.name, "as in tables");
+  v("histories", p.histories, "one to three policies");
+  v("blend", p.blend, "how the histories become one image");
+  v("filter", p.filter, "the filter around them");
+}
+
+/// The variants of the field and of this project by name: none, unweighted, unweighted-96, unweighted-98, weighted,
+/// published, optimal, seed, seed-slide, consistent, lag-uw, lag-wf, lag-safe, lag-uwf, oracle.
+std::vector<std::string> variantNames();
+/// Throws core::UsageError, naming the known ones, for any other name.
+Variant variantByName(const std::string& name);
+/// Throws core::UsageError where a variant contradicts itself (no history, a decay above 1, a pair that does not
+/// exist).
+void requireConsistent(const Variant& variant);
+
+}  // namespace experiments
