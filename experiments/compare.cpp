@@ -35,7 +35,7 @@ std::string metricMeaning(const std::string& name) {
 Json compareFiles(const std::string& referenceFile, const std::string& testFile, const std::string& layer) {
   const core::Planes reference = core::rgbOf(core::readExr(referenceFile), layer, referenceFile);
   const core::Planes test = core::rgbOf(core::readExr(testFile), layer, testFile);
-  const Comparison comparison(test.view(), Reference(reference.view()), testFile, referenceFile);
+  const Comparison comparison(test.view(), Reference(reference.view(), referenceFile), testFile);
   Json json;
   for (const auto& [name, value] : namedMetrics(comparison.in())) json[name] = numberOrNull(value);
   return json;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "experiments/ssim.h"
 
 namespace experiments {
 
@@ -17,90 +16,21 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRelativeFloor = 0.01;  ///< added to r^2; the slides' protocol
 constexpr double kTrimmed = 0.001;       ///< share of pixels left out of the trimmed mean
+constexpr std::array kLuminance{0.2126, 0.7152, 0.0722};
 
-/// One channel's errors against both halves of the reference.
-struct ChannelError {
-  double reference, first, second;
-  ChannelError(double y, double r1, double r2) : reference(0.5 * (r1 + r2)), first(y - r1), second(y - r2) {}
-  double squared() const { return first * second; }
-  double relative() const { return squared() / (reference * reference + kRelativeFloor); }
-  double signedError() const { return 0.5 * (first + second); }
-};
-
-ChannelError errorAt(const Colour& test, const Reference& reference, int channel, int x, int y) {
-  return {test.plane[channel](x, y), reference.first.plane[channel](x, y), reference.second.plane[channel](x, y)};
-}
-
-double relativeErrorAt(const Colour& test, const Reference& reference, int x, int y) {
-  double sum = 0;
-  for (int c = 0; c < 3; ++c) sum += errorAt(test, reference, c, x, y).relative();
-  return sum / 3;
-}
-
-/// Linear indices of a region's pixels, in reading order.
-std::vector<std::int64_t> pixelsOf(const Mask& region, int width, int height) {
-  std::vector<std::int64_t> pixels;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      if (region.empty() || region(x, y)) pixels.push_back(std::int64_t{y} * width + x);
-  return pixels;
-}
-
-/// Mean of value(x, y) over pixels given by linear index; NaN without pixels.
+/// Mean over indices of value(index), in an order fixed by their count; NaN without any.
 template <class Value>
-double meanOver(const std::vector<std::int64_t>& pixels, int width, Value&& value) {
-  if (pixels.empty()) return kNaN;
-  const double sum = core::deterministicSum(static_cast<std::int64_t>(pixels.size()), [&](std::int64_t i) {
-    return static_cast<double>(value(static_cast<int>(pixels[i] % width), static_cast<int>(pixels[i] / width)));
-  });
-  return sum / static_cast<double>(pixels.size());
+double meanOver(const std::vector<std::int64_t>& indices, Value&& value) {
+  const auto count = static_cast<std::int64_t>(indices.size());
+  if (count == 0) return kNaN;
+  return core::deterministicSum(count, [&](std::int64_t i) { return value(indices[i]); }) / static_cast<double>(count);
 }
 
-/// Mean over pixels and channels of term(ChannelError).
-template <class Term>
-double meanError(const Colour& test, const Reference& reference, const std::vector<std::int64_t>& pixels, Term&& term) {
-  return meanOver(pixels, test.width(), [&](int x, int y) {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c) sum += term(errorAt(test, reference, c, x, y));
-    return sum / 3;
-  });
-}
-
-double maxErrorOver(const Colour& test, const Reference& reference, const std::vector<std::int64_t>& pixels) {
-  double largest = pixels.empty() ? kNaN : 0;
-  for (const std::int64_t i : pixels)
-    for (int c = 0; c < 3; ++c) {
-      const int x = static_cast<int>(i % test.width()), y = static_cast<int>(i / test.width());
-      largest = std::max(largest, std::abs(errorAt(test, reference, c, x, y).signedError()));
-    }
-  return largest;
-}
-
-double luminance(const Colour& image, int x, int y) {
-  return 0.2126 * image.plane[0](x, y) + 0.7152 * image.plane[1](x, y) + 0.0722 * image.plane[2](x, y);
-}
-
-std::vector<double> valuesAt(const core::Image<double>& image, const std::vector<std::int64_t>& pixels) {
-  std::vector<double> values;
-  values.reserve(pixels.size());
-  for (const std::int64_t i : pixels) values.push_back(image.data()[i]);
-  return values;
-}
-
-/// Without the pixels that lie within kSsimRadius of the border.
-std::vector<std::int64_t> interior(std::vector<std::int64_t> pixels, int width, int height) {
-  std::erase_if(pixels, [&](std::int64_t i) {
-    const auto x = static_cast<int>(i % width), y = static_cast<int>(i / width);
-    return std::min({x, y, width - 1 - x, height - 1 - y}) < kSsimRadius;
-  });
-  return pixels;
-}
-
-core::Planes meanOfHalves(const Reference& reference) {
-  core::Planes mean(reference.first.width(), reference.first.height());
-  core::forEachPixel(mean.width(), mean.height(), [&](int x, int y) {
-    mean.view().store(x, y, 0.5f * (reference.first.load(x, y) + reference.second.load(x, y)));
-  });
+core::Planes meanOfHalves(const Colour& first, const Colour& second) {
+  core::Planes mean(first.width(), first.height());
+  const core::PlanesView<float> out = mean.view();
+  core::forEachPixel(mean.width(), mean.height(),
+                     [&](int x, int y) { out.store(x, y, 0.5f * (first.load(x, y) + second.load(x, y))); });
   return mean;
 }
 
@@ -126,40 +56,81 @@ double trimmedMean(std::vector<double> values, double fraction) {
   if (values.empty()) return kNaN;
   const double share = std::ceil(fraction * static_cast<double>(values.size()) - 1e-9);
   const std::size_t kept = values.size() - std::min(values.size() - 1, static_cast<std::size_t>(std::max(0.0, share)));
-  std::sort(values.begin(), values.end());
+  if (kept < values.size()) std::nth_element(values.begin(), values.begin() + kept, values.end());
   const double sum = core::deterministicSum(static_cast<std::int64_t>(kept), [&](std::int64_t i) { return values[i]; });
   return sum / static_cast<double>(kept);
 }
 
-Comparison::Comparison(const Colour& test, const Reference& reference, const std::string& testName,
-                       const std::string& referenceName)
-    : test_(test), reference_(reference), relative_(test.width(), test.height()) {
-  requireSize(test, reference.first, testName, referenceName);
-  requireSize(test, reference.second, testName, referenceName);
-  requireFinite(test, testName);
-  requireFinite(reference.first, referenceName);
-  requireFinite(reference.second, referenceName);
-  core::forEachPixel(test.width(), test.height(),
-                     [&](int x, int y) { relative_(x, y) = relativeErrorAt(test, reference, x, y); });
-  ssim_ = ssimMap(test, meanOfHalves(reference).view());
+Reference::Reference(const Colour& first, const Colour& second, const std::string& name)
+    : first_(first), second_(second.empty() ? first : second), name_(name) {
+  requireSize(second_, first_, name, "its other half");
+  requireFinite(first_, name);
+  requireFinite(second_, name);
+  ssim_ = std::make_shared<const SsimReference>(meanOfHalves(first_, second_).view());
+}
+
+Comparison::Pixel Comparison::pixelOf(const Colour& test, const Reference& reference, int x, int y) {
+  Pixel p;
+  for (int c = 0; c < 3; ++c) {
+    const double value = test.plane[c](x, y), r1 = reference.first().plane[c](x, y),
+                 r2 = reference.second().plane[c](x, y), r = 0.5 * (r1 + r2);
+    const double squared = (value - r1) * (value - r2);
+    p.squared += squared / 3;
+    p.relative += squared / (r * r + kRelativeFloor) / 3;
+    p.difference += (value - r) / 3;
+    p.largest = std::max(p.largest, std::abs(value - r));
+    p.testLuminance += kLuminance[c] * value;
+    p.referenceLuminance += kLuminance[c] * r;
+  }
+  return p;
+}
+
+Comparison::Comparison(const Colour& test, const Reference& reference, const std::string& name)
+    : pixels_(test.width(), test.height()) {
+  requireSize(test, reference.first(), name, reference.name());
+  requireFinite(test, name);
+  core::forEachPixel(width(), height(), [&](int x, int y) { pixels_(x, y) = pixelOf(test, reference, x, y); });
+  ssim_ = reference.ssim().map(test);
+}
+
+std::vector<std::int64_t> Comparison::indicesOf(const Mask& region) const {
+  if (!region.empty()) CHECK(region.width == width() && region.height == height());
+  std::vector<std::int64_t> indices;
+  for (int y = 0; y < height(); ++y)
+    for (int x = 0; x < width(); ++x)
+      if (region.empty() || region(x, y)) indices.push_back(std::int64_t{y} * width() + x);
+  return indices;
+}
+
+double Comparison::ssimOver(const std::vector<std::int64_t>& indices) const {
+  std::vector<std::int64_t> interior;
+  for (const std::int64_t i : indices) {
+    const auto x = static_cast<int>(i % width()), y = static_cast<int>(i / width());
+    if (std::min({x, y, width() - 1 - x, height() - 1 - y}) >= kSsimRadius) interior.push_back(i);
+  }
+  return meanOver(interior, [&](std::int64_t i) { return ssim_.data()[i]; });
 }
 
 Metrics Comparison::in(const Mask& region) const {
-  const int width = test_.width(), height = test_.height();
-  if (!region.empty()) CHECK(region.width == width && region.height == height);
-  const std::vector<std::int64_t> pixels = pixelsOf(region, width, height);
-  const std::vector<double> relative = valuesAt(relative_, pixels);
-  Metrics m;
-  m.relMse = trimmedMean(relative, 0);
-  m.relMseTrimmed = trimmedMean(relative, kTrimmed);
-  m.ssim = meanOver(interior(pixels, width, height), width, [&](int x, int y) { return ssim_(x, y); });
-  const auto mean = [&](const Colour& c) {
-    return meanOver(pixels, width, [&](int x, int y) { return luminance(c, x, y); });
+  const std::vector<std::int64_t> indices = indicesOf(region);
+  const Pixel* const pixels = pixels_.data();
+  const auto mean = [&](double Pixel::*member) {
+    return meanOver(indices, [&](std::int64_t i) { return pixels[i].*member; });
   };
-  m.energyRatio = mean(test_) / (0.5 * (mean(reference_.first) + mean(reference_.second)));
-  m.mse = meanError(test_, reference_, pixels, [](const ChannelError& e) { return e.squared(); });
-  m.bias = meanError(test_, reference_, pixels, [](const ChannelError& e) { return e.signedError(); });
-  m.maxError = maxErrorOver(test_, reference_, pixels);
+  std::vector<double> relative;
+  double largest = indices.empty() ? kNaN : 0;
+  for (const std::int64_t i : indices) {
+    relative.push_back(pixels[i].relative);
+    largest = std::max(largest, pixels[i].largest);
+  }
+  Metrics m;
+  m.relMse = mean(&Pixel::relative);
+  m.relMseTrimmed = trimmedMean(std::move(relative), kTrimmed);
+  m.ssim = ssimOver(indices);
+  m.energyRatio = mean(&Pixel::testLuminance) / mean(&Pixel::referenceLuminance);
+  m.mse = mean(&Pixel::squared);
+  m.bias = mean(&Pixel::difference);
+  m.maxError = largest;
   return m;
 }
 

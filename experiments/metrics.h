@@ -3,21 +3,35 @@
 // in ssim.h.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "core/image.h"
+#include "experiments/ssim.h"
 
 namespace experiments {
 
 using Colour = core::PlanesView<const float>;  ///< linear RGB
 using Mask = core::In<std::uint8_t>;           ///< nonzero = in the region; an empty mask is the full frame
 
-/// What an image is compared with: one image, or two independent halves whose own noise then does not bias errors.
-struct Reference {
-  Colour first, second;  ///< second may be empty
-  Reference(const Colour& only) : first(only), second(only) {}
-  Reference(const Colour& a, const Colour& b) : first(a), second(b.empty() ? a : b) {}
+/// What images are compared with: one image, or two independent halves whose own noise then does not bias errors.
+/// Prepared once for any number of comparisons; cheap to copy. Views only: the images must outlive it.
+class Reference {
+ public:
+  /// second may be empty. Throws core::Error, naming `name`, where sizes differ or a pixel is not finite.
+  Reference(const Colour& first, const Colour& second, const std::string& name = "reference");
+  explicit Reference(const Colour& only, const std::string& name = "reference") : Reference(only, only, name) {}
+
+  const Colour& first() const { return first_; }
+  const Colour& second() const { return second_; }
+  const SsimReference& ssim() const { return *ssim_; }
+  const std::string& name() const { return name_; }
+
+ private:
+  Colour first_, second_;
+  std::string name_;
+  std::shared_ptr<const SsimReference> ssim_;
 };
 
 /// Errors over one region; NaN throughout where the region holds no pixel.
@@ -31,22 +45,29 @@ struct Metrics {
   double maxError = 0;       ///< largest |y - r| of any channel
 };
 
-/// One image against one reference; what is computed once serves every region. Holds no view of the images' pixels
-/// beyond its constructor except through the views given, which must outlive it.
+/// One image against one reference, pixel by pixel; then means over any number of regions.
 class Comparison {
  public:
-  /// Throws core::Error where sizes differ or a pixel is not finite; testName and referenceName appear in the message.
-  Comparison(const Colour& test, const Reference& reference, const std::string& testName = "test image",
-             const std::string& referenceName = "reference");
+  /// Throws core::Error, naming `name`, where sizes differ or a pixel is not finite.
+  Comparison(const Colour& test, const Reference& reference, const std::string& name = "test image");
 
   Metrics in(const Mask& region = {}) const;
-  /// Per pixel: channel mean of the relative squared error. For error maps.
-  core::In<double> relativeError() const { return relative_; }
+  /// Channel mean of the relative squared error (may be negative with two halves). For error maps.
+  double relativeError(int x, int y) const { return pixels_(x, y).relative; }
+  int width() const { return pixels_.width(); }
+  int height() const { return pixels_.height(); }
 
  private:
-  Colour test_;
-  Reference reference_;
-  core::Image<double> relative_, ssim_;
+  /// Channel means of one pixel's errors, the largest of them, and both luminances.
+  struct Pixel {
+    double relative = 0, squared = 0, difference = 0, largest = 0, testLuminance = 0, referenceLuminance = 0;
+  };
+  static Pixel pixelOf(const Colour& test, const Reference& reference, int x, int y);
+  std::vector<std::int64_t> indicesOf(const Mask& region) const;
+  double ssimOver(const std::vector<std::int64_t>& indices) const;
+
+  core::Image<Pixel> pixels_;
+  core::Image<double> ssim_;
 };
 
 /// Throws core::Error that names the first pixel (in reading order) with a value that is not finite.

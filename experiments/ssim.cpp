@@ -1,6 +1,7 @@
 #include "experiments/ssim.h"
 
 #include <cmath>
+#include <vector>
 
 #include "core/parallel.h"
 
@@ -31,22 +32,34 @@ int reflected(int i, int size) {
   return i < size ? i : period - 1 - i;
 }
 
-/// Separable Gaussian over rows, then columns.
-Plane blurred(const Plane& in) {
+/// Weighted sum of kTaps rows; tap(i) is the start of the i-th. Folded about the middle, x innermost.
+template <class Tap>
+void sumTaps(Tap&& tap, int width, double* __restrict out) {
   static const std::array<double, kTaps> weights = gaussianWeights();
+  const double* const middle = tap(kSsimRadius);
+  for (int x = 0; x < width; ++x) out[x] = weights[kSsimRadius] * middle[x];
+  for (int i = 0; i < kSsimRadius; ++i) {
+    const double *const before = tap(i), *const after = tap(kTaps - 1 - i);
+    const double w = weights[i];
+#pragma omp simd
+    for (int x = 0; x < width; ++x) out[x] += w * (before[x] + after[x]);
+  }
+}
+
+/// Separable Gaussian over columns, then rows.
+Plane blurred(const Plane& in) {
   const int width = in.width(), height = in.height();
-  Plane rows(width, height), out(width, height);
-  const auto tap = [&](int y, int x, bool along) {
-    const Plane& source = along ? in : rows;
-    double sum = 0;
-    for (int i = 0; i < kTaps; ++i) {
-      const int d = i - kSsimRadius;
-      sum += weights[i] * (along ? source(reflected(x + d, width), y) : source(x, reflected(y + d, height)));
+  Plane out(width, height);
+  core::forEachRow(height, [&](int y) {
+    std::vector<double> padded(static_cast<std::size_t>(width) + 2 * kSsimRadius);
+    double* const row = padded.data() + kSsimRadius;
+    sumTaps([&](int i) { return in.view().row(reflected(y + i - kSsimRadius, height)); }, width, row);
+    for (int x = 1; x <= kSsimRadius; ++x) {
+      row[-x] = row[reflected(-x, width)];
+      row[width - 1 + x] = row[reflected(width - 1 + x, width)];
     }
-    return sum;
-  };
-  core::forEachPixel(width, height, [&](int x, int y) { rows(x, y) = tap(y, x, true); });
-  core::forEachPixel(width, height, [&](int x, int y) { out(x, y) = tap(y, x, false); });
+    sumTaps([&](int i) { return padded.data() + i; }, width, out.view().row(y));
+  });
   return out;
 }
 
@@ -61,18 +74,14 @@ Plane tonePlane(const core::In<float>& in) {
   return planeOf(in.width, in.height, [&](int x, int y) { return toneMapped(in(x, y)); });
 }
 
-/// Adds a third of one channel's SSIM to map [Wang et al. 2004, equation (13)].
-void addChannel(const Plane& a, const Plane& b, Plane& map) {
-  const int width = a.width(), height = a.height();
-  const auto product = [&](const Plane& p, const Plane& q) {
-    return blurred(planeOf(width, height, [&](int x, int y) { return p(x, y) * q(x, y); }));
-  };
-  const Plane meanA = blurred(a), meanB = blurred(b), aa = product(a, a), bb = product(b, b), ab = product(a, b);
-  core::forEachPixel(width, height, [&](int x, int y) {
-    const double ma = meanA(x, y), mb = meanB(x, y);
-    const double va = aa(x, y) - ma * ma, vb = bb(x, y) - mb * mb, cov = ab(x, y) - ma * mb;
-    map(x, y) += (2 * ma * mb + kC1) * (2 * cov + kC2) / ((ma * ma + mb * mb + kC1) * (va + vb + kC2)) / 3;
-  });
+Plane blurredProduct(const Plane& p, const Plane& q) {
+  return blurred(planeOf(p.width(), p.height(), [&](int x, int y) { return p(x, y) * q(x, y); }));
+}
+
+/// SSIM of one pixel and channel from local means of a, b, aa, bb, ab [Wang et al. 2004, equation (13)].
+double similarity(double a, double b, double aa, double bb, double ab) {
+  const double varianceA = aa - a * a, varianceB = bb - b * b, covariance = ab - a * b;
+  return (2 * a * b + kC1) * (2 * covariance + kC2) / ((a * a + b * b + kC1) * (varianceA + varianceB + kC2));
 }
 
 }  // namespace
@@ -82,9 +91,24 @@ double toneMapped(double x) {
   return c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;  // IEC 61966-2-1
 }
 
-core::Image<double> ssimMap(const core::PlanesView<const float>& a, const core::PlanesView<const float>& b) {
-  Plane map(a.width(), a.height());
-  for (int c = 0; c < 3; ++c) addChannel(tonePlane(a.plane[c]), tonePlane(b.plane[c]), map);
+SsimReference::SsimReference(const core::PlanesView<const float>& reference) {
+  for (int c = 0; c < 3; ++c) {
+    channels_[c].value = tonePlane(reference.plane[c]);
+    channels_[c].mean = blurred(channels_[c].value);
+    channels_[c].square = blurredProduct(channels_[c].value, channels_[c].value);
+  }
+}
+
+core::Image<double> SsimReference::map(const core::PlanesView<const float>& test) const {
+  Plane map(test.width(), test.height());
+  for (int c = 0; c < 3; ++c) {
+    const Channel& r = channels_[c];
+    const Plane value = tonePlane(test.plane[c]), mean = blurred(value), square = blurredProduct(value, value),
+                cross = blurredProduct(value, r.value);
+    core::forEachPixel(map.width(), map.height(), [&](int x, int y) {
+      map(x, y) += similarity(mean(x, y), r.mean(x, y), square(x, y), r.square(x, y), cross(x, y)) / 3;
+    });
+  }
   return map;
 }
 
