@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 
+#include "core/bounds.h"
 #include "core/check.h"
 #include "core/parallel.h"
 #include "core/texture.h"
@@ -29,30 +30,11 @@ vec2 toBarycentric(vec2 u) {
   return u.y > u.x ? vec2(0.5f * u.x, u.y - 0.5f * u.x) : vec2(u.x - 0.5f * u.y, 0.5f * u.y);
 }
 
-template <class Body>
-void forEachIndex(std::size_t count, Body&& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, kGrain), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
-  });
-}
-
-struct Bounds {
-  vec3 low{kInfinity}, high{-kInfinity};
-  void add(const vec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  bool empty() const { return !(low.x <= high.x); }
-  vec3 corner(int i) const { return {(i & 1 ? high : low).x, (i & 2 ? high : low).y, (i & 4 ? high : low).z}; }
-};
-
-Bounds boundsOf(const Mesh& mesh) {
-  Bounds bounds;
-  for (const vec3& p : mesh.positions) bounds.add(p);
-  return bounds;
-}
-
 /// Mean texture colour over every triangle of a mesh.
 std::vector<vec3> textureMeans(const Mesh& mesh, const TextureMean& mean) {
   std::vector<vec3> means(mesh.triangles.size());
-  forEachIndex(means.size(), [&](std::size_t i) { means[i] = mean.over(cornersOf(mesh, i)); });
+  forEachIndex(
+      means.size(), [&](std::size_t i) { means[i] = mean.over(cornersOf(mesh, i)); }, kGrain);
   return means;
 }
 
@@ -73,18 +55,13 @@ struct Lights::Constants {
     }
     const auto directional = [](const PunctualLight& l) { return l.type == PunctualLight::Type::directional; };
     if (std::none_of(scene.punctual.begin(), scene.punctual.end(), directional)) return;
-    for (const Mesh& mesh : scene.meshes) bounds.push_back(boundsOf(mesh));
+    bounds = meshBounds(scene);
   }
 
   /// Squared radius of the sphere around the scene's bounding box.
   float radius2(const Scene& scene, const Pose& pose) const {
-    Bounds all;
-    for (const Instance& instance : scene.instances) {
-      const Bounds& box = bounds[instance.mesh];
-      for (int i = 0; i < 8 && !box.empty(); ++i)
-        all.add(vec3(pose.nodeToWorld[instance.node] * vec4(box.corner(i), 1)));
-    }
-    const vec3 half = all.empty() ? vec3(1) : 0.5f * (all.high - all.low);
+    const Bounds all = sceneBounds(scene, bounds, pose.nodeToWorld);
+    const vec3 half = 0.5f * (all.high - all.low);
     return dot(half, half);
   }
 };
@@ -112,7 +89,7 @@ void Lights::listTriangles(const Pose& pose, std::vector<float>& power) {
   }
   triangles_.resize(count);
   power.resize(count + scene.punctual.size());
-  tbb::parallel_for(std::size_t{0}, scene.instances.size(), [&](std::size_t i) {
+  forEachIndex(scene.instances.size(), [&](std::size_t i) {
     if (firstOfInstance_[i] != kNoLight) fillTriangles(i, pose, power);
   });
 }
@@ -128,16 +105,19 @@ void Lights::fillTriangles(std::size_t i, const Pose& pose, std::span<float> pow
                               (means.empty() ? 0 : TriangleLight::kTextured) |
                               (determinant(glm::mat3(toWorld)) < 0 ? TriangleLight::kMirrored : 0);
   const float sides = material.doubleSided ? 2.0f : 1.0f;
-  forEachIndex(mesh.triangles.size(), [&, first = firstOfInstance_[i]](std::size_t t) {
-    const auto corner = [&](std::uint32_t v) { return vec3(toWorld * vec4(mesh.positions[v], 1)); };
-    const uvec3 v = mesh.triangles[t];
-    const vec3 a = corner(v.x), b = corner(v.y), c = corner(v.z);
-    TriangleLight& light = triangles_[first + t];
-    light = {a, b - a, c - a, radiance, static_cast<std::uint32_t>(instance.mesh), static_cast<std::uint32_t>(t),
-             0, flags};
-    const vec3 mean = means.empty() ? radiance : radiance * means[t];
-    power[first + t] = sides * 0.5f * length(light.cross2Area()) * luminance(mean);
-  });
+  forEachIndex(
+      mesh.triangles.size(),
+      [&, first = firstOfInstance_[i]](std::size_t t) {
+        const auto corner = [&](std::uint32_t v) { return vec3(toWorld * vec4(mesh.positions[v], 1)); };
+        const uvec3 v = mesh.triangles[t];
+        const vec3 a = corner(v.x), b = corner(v.y), c = corner(v.z);
+        TriangleLight& light = triangles_[first + t];
+        light = {a, b - a, c - a, radiance, static_cast<std::uint32_t>(instance.mesh), static_cast<std::uint32_t>(t),
+                 0, flags};
+        const vec3 mean = means.empty() ? radiance : radiance * means[t];
+        power[first + t] = sides * 0.5f * length(light.cross2Area()) * luminance(mean);
+      },
+      kGrain);
 }
 
 /// Total intensity over pi, the unit of area times radiance; directional lights come in balanceDirectional().
@@ -178,8 +158,9 @@ void Lights::drawBy(const std::vector<float>& power) {
                   "check its emission, size and transform");
   table_ = AliasTable(power);
   if (table_.empty()) return;
-  forEachIndex(triangles_.size(),
-               [&](std::size_t i) { triangles_[i].probability = table_.probability(static_cast<std::uint32_t>(i)); });
+  forEachIndex(
+      triangles_.size(),
+      [&](std::size_t i) { triangles_[i].probability = table_.probability(static_cast<std::uint32_t>(i)); }, kGrain);
 }
 
 LightSample Lights::sample(Rng& rng) const {

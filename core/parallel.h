@@ -45,14 +45,20 @@ void forEachTile(int width, int height, Body&& body, int tile = kDefaultTile) {
   });
 }
 
+/// Calls body(i) once for every i in [0, count), at least grain of them in a row on one thread.
+template <class Body>
+void forEachIndex(std::size_t count, Body&& body, std::size_t grain = 1) {
+  const LoopOrder loop;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
+    const BodyOrder order;
+    for (std::size_t i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
 /// Calls body(y) once for every row.
 template <class Body>
 void forEachRow(int height, Body&& body) {
-  const LoopOrder loop;
-  tbb::parallel_for(tbb::blocked_range<int>(0, height, 1), [&](const tbb::blocked_range<int>& range) {
-    const BodyOrder order;
-    for (int y = range.begin(); y != range.end(); ++y) body(y);
-  });
+  forEachIndex(static_cast<std::size_t>(height), [&](std::size_t y) { body(static_cast<int>(y)); });
 }
 
 /// Sum of term(i) over [0, count) in double precision, in an order fixed by count alone.

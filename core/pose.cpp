@@ -2,6 +2,7 @@
 // Source: glTF 2.0 specification, section 3.11 and appendix C (interpolation modes).
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "core/bounds.h"
 #include "core/check.h"
 #include "core/scene.h"
 
@@ -89,32 +90,6 @@ std::vector<float> emissionFactors(const Scene& scene, float time) {
   return factors;
 }
 
-struct Bounds {
-  vec3 low{kInfinity}, high{-kInfinity};
-  bool empty() const { return !(low.x <= high.x); }
-  void add(const vec3& p) { low = glm::min(low, p), high = glm::max(high, p); }
-  vec3 corner(int i) const { return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}; }
-};
-
-std::vector<Bounds> meshBounds(const Scene& scene) {
-  std::vector<Bounds> bounds(scene.meshes.size());
-  for (std::size_t m = 0; m < scene.meshes.size(); ++m)
-    for (const vec3& p : scene.meshes[m].positions) bounds[m].add(p);
-  return bounds;
-}
-
-/// Bounds of all instances when the animation starts; a cube around the origin where there are none.
-Bounds boundsAtStart(const Scene& scene) {
-  const std::vector<mat4> toWorld = nodesToWorld(scene, 0);
-  const std::vector<Bounds> meshes = meshBounds(scene);
-  Bounds bounds;
-  for (const Instance& instance : scene.instances) {
-    const Bounds& local = meshes[instance.mesh];
-    for (int i = 0; i < 8 && !local.empty(); ++i) bounds.add(vec3(toWorld[instance.node] * vec4(local.corner(i), 1)));
-  }
-  return bounds.empty() ? Bounds{vec3(-1), vec3(1)} : bounds;
-}
-
 /// Sees the whole bounding sphere, from the side of +z and slightly above.
 Camera framingCamera(const Bounds& bounds) {
   const vec3 centre = 0.5f * (bounds.low + bounds.high);
@@ -131,7 +106,7 @@ bool isUsable(const Camera& camera) {
 }
 
 Camera cameraOf(const Scene& scene, const std::vector<mat4>& toWorld, int index) {
-  if (scene.cameras.empty()) return framingCamera(boundsAtStart(scene));
+  if (scene.cameras.empty()) return framingCamera(sceneBounds(scene, meshBounds(scene), nodesToWorld(scene, 0)));
   const int count = static_cast<int>(scene.cameras.size());
   if (index < 0 || index >= count)
     throw UsageError(scene.name, "camera " + std::to_string(index) + " does not exist",

@@ -1,13 +1,13 @@
 #include "core/tracer.h"
 
 #include <embree3/rtcore.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <bit>
 #include <vector>
 
 #include "core/check.h"
+#include "core/parallel.h"
 
 namespace core {
 namespace {
@@ -62,7 +62,7 @@ class MeshTrees {
  public:
   explicit MeshTrees(const Scene& scene) : device_(rtcNewDevice(nullptr)), trees_(scene.meshes.size()) {
     if (!device_) throwOnError(nullptr);
-    tbb::parallel_for(std::size_t{0}, trees_.size(), [&](std::size_t i) { trees_[i] = build(scene.meshes[i]); });
+    forEachIndex(trees_.size(), [&](std::size_t i) { trees_[i] = build(scene.meshes[i]); });
     throwOnError(device_);
   }
   ~MeshTrees() {

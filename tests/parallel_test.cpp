@@ -53,6 +53,16 @@ TEST(ForEachTile, CoversEveryPixelOnce) {
     }
 }
 
+TEST(ForEachIndex, VisitsEveryIndexOnce) {
+  for (const int count : {0, 1, 63, 64, 65, 1001})
+    for (const std::size_t grain : {1, 64}) {
+      Image<int> visits(count, 1);
+      const auto visit = [&](std::size_t i) { ++visits(static_cast<int>(i), 0); };
+      withThreads(3, [&] { forEachIndex(static_cast<std::size_t>(count), visit, grain); });
+      expectAllOnes(visits);
+    }
+}
+
 TEST(ForEachRow, VisitsEveryRowOnce) {
   Image<int> visits(1, 1001);
   withThreads(3, [&] { forEachRow(1001, [&](int y) { ++visits(0, y); }); });
