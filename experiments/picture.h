@@ -1,14 +1,42 @@
-// HDR images as 8-bit pictures.
+// 8-bit pictures for people: tone-mapped frames, error maps, and the gaze drawn in.
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "core/image.h"
+#include "experiments/metrics.h"
 
 namespace experiments {
 
-/// 8-bit sRGB pixels, 3 bytes each, row-major: exposure in stops, then x / (1 + x) a channel, then the sRGB curve.
-std::vector<std::uint8_t> tonemapped(core::PlanesView<const float> image, float exposure);
+/// 8-bit sRGB pixels, 3 bytes each, row-major from the top.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> bytes;
+
+  Picture() = default;
+  Picture(int w, int h) : width(w), height(h), bytes(3 * static_cast<std::size_t>(w) * h) {}
+  std::uint8_t* at(int x, int y) { return &bytes[3 * (static_cast<std::size_t>(y) * width + x)]; }
+};
+
+/// Exposure in stops, then SSIM's tone map. Pixels that are not finite are magenta.
+Picture toneMappedPicture(const Colour& image, float stops = 0);
+
+/// Relative squared errors that the ends of the colour map stand for; the scale is logarithmic.
+struct ErrorScale {
+  double low = 1e-4, high = 1;
+};
+
+/// Colour of t in [0, 1], dark to bright; clamped outside.
+core::vec3 mapColour(double t);
+
+/// Relative squared error of every pixel on a logarithmic colour scale.
+Picture errorPicture(const Comparison& comparison, const ErrorScale& scale);
+
+/// Draws a circle with a dark rim, radius and centre in pixels; parts outside the picture are left out.
+void drawCircle(Picture& picture, core::vec2 centre, float radius, core::vec3 colour);
+
+/// The picture as a PNG file's bytes.
+std::string pngBytes(const Picture& picture);
 
 }  // namespace experiments
