@@ -1,17 +1,20 @@
 // One instant of a scene as reuse sees it: camera, lights, geometry and the surfaces that the camera sees.
 #pragma once
 
+#include <memory>
+
 #include "core/lights.h"
 #include "core/surface.h"
 #include "core/tracer.h"
 
 namespace core {
 
-/// Views only; whoever renders keeps the owners of this frame and of the frames before alive.
+/// Images are views: whoever renders keeps their owners alive for this frame and the next. Lights are shared, because
+/// reservoirs that wait may need them for longer.
 struct Moment {
   std::uint32_t frame = 0;
   vec3 cameraPosition{0};
-  const Lights* lights = nullptr;
+  std::shared_ptr<const Lights> lights;
   const Tracer* tracer = nullptr;
   In<Surface> surfaces;
   Guide guide;

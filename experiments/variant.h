@@ -8,23 +8,6 @@
 #include "twohistory/blend.h"
 #include "twohistory/policy.h"
 
-namespace twohistory {
-
-template <class V>
-void describe(V& v, Policy& p) {
-  v.choice("weighting", p.weighting, {{"frames", Weighting::frames}, {"samples", Weighting::samples}},
-           "weight of a fresh value: 1, or its sample count");
-  v.choice("forgetting", p.forgetting,
-           {{"decay", Forgetting::decay},
-            {"relativeCap", Forgetting::relativeCap},
-            {"absoluteCap", Forgetting::absoluteCap},
-            {"none", Forgetting::none}},
-           "how old values lose weight");
-  v("amount", p.amount, "decay a frame in [0, 1], or the cap", 0.0, 1e9);
-}
-
-}  // namespace twohistory
-
 namespace experiments {
 
 struct Variant {

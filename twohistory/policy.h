@@ -20,6 +20,19 @@ struct Policy {
   double amount = 0.95;
 };
 
+template <class V>
+void describe(V& v, Policy& p) {
+  v.choice("weighting", p.weighting, {{"frames", Weighting::frames}, {"samples", Weighting::samples}},
+           "weight of a fresh value: 1, or its sample count");
+  v.choice("forgetting", p.forgetting,
+           {{"decay", Forgetting::decay},
+            {"relativeCap", Forgetting::relativeCap},
+            {"absoluteCap", Forgetting::absoluteCap},
+            {"none", Forgetting::none}},
+           "how old values lose weight");
+  v("amount", p.amount, "decay a frame in [0, 1], or the cap", 0.0, 1e9);
+}
+
 /// A history heavier than this would no longer feel a fresh weight of 1 (a float stalls at 2^24), so it forgets the
 /// rest.
 template <class Real>

@@ -1,0 +1,159 @@
+#include "experiments/pipeline.h"
+
+#include "core/parallel.h"
+
+namespace experiments {
+namespace {
+
+using core::In;
+using core::Planes;
+using core::PlanesView;
+using core::vec3;
+
+void fillAlbedo(In<core::Surface> surfaces, PlanesView<float> out) {
+  core::forEachPixel(surfaces.width, surfaces.height, [&](int x, int y) {
+    const core::Surface& s = surfaces(x, y);
+    out.store(x, y, s.hit() ? core::demodulationAlbedo(s) : vec3(1));
+  });
+}
+
+bool usesGradient(twohistory::BlendMode mode) {
+  return mode == twohistory::BlendMode::seed || mode == twohistory::BlendMode::seedSlide;
+}
+
+twohistory::GradientParameters gradientParameters(const Variant& v) {
+  if (v.blend.mode == twohistory::BlendMode::seed) return {};
+  const auto decay = static_cast<float>(v.histories[v.blend.pair[0]].amount);
+  return {twohistory::GradientSource::signal, 1 - decay, {}};
+}
+
+template <int K>
+std::array<twohistory::Policy, K> policiesOf(const Variant& v) {
+  std::array<twohistory::Policy, K> policies;
+  std::copy_n(v.histories.begin(), K, policies.begin());
+  return policies;
+}
+
+/// What blend() reads of a filter state. The gradient is empty for blends that have none.
+template <int K>
+twohistory::Histories<K> historiesOf(const svgf::FilterState<K>& s, const Planes& gradient,
+                                     PlanesView<const float> target) {
+  return {s.historyViews(), s.ledger[s.now], s.sampleVariance, s.filteredVariance, gradient, target};
+}
+
+}  // namespace
+
+ShadeState::ShadeState(const Stage& stage, const ShadeParameters& p, std::uint64_t seed, int width, int height)
+    : seed_(seed),
+      gaze_(p.gaze),
+      foveation_(p.foveation),
+      samples_(width, height),
+      fovea_(width, height),
+      taps_(width, height),
+      restir_(width, height),
+      radiance_(width, height),
+      albedo_(width, height) {
+  static_cast<void>(stage);
+  for (Instant& i : instants_) i.gbuffer = core::GBuffer(width, height);
+}
+
+Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, ShadeState& s) {
+  const Instant* past = s.started_ ? &s.instants_[s.now_] : nullptr;
+  s.now_ = 1 - s.now_;
+  Instant& now = s.instants_[s.now_];
+  const Instant& before = s.started_ ? s.before() : now;
+  PassTimes& t = s.times_;
+  const int width = s.samples_.width(), height = s.samples_.height();
+
+  timed(t, "place samples", [&] {
+    s.gazeNow_ = s.gaze_.at(frame / kFramesPerSecond, width, height);
+    s.foveation_.place(s.gazeNow_, s.seed_, frame, s.samples_, s.fovea_);
+  });
+  timed(t, "pose scene", [&] { stage.pose(frame, past, now); });
+  timed(t, "trace G-buffer", [&] { stage.trace(before.pose, p.features, p.tile, now); });
+  timed(t, "reproject", [&] {
+    if (s.started_)
+      twohistory::reproject(now.gbuffer.guide.view(), before.gbuffer.guide.view(), p.reprojection, s.taps_);
+    else
+      s.taps_.fill({});
+  });
+
+  const core::Moment momentNow = now.moment(), momentBefore = before.moment();
+  const restir::Frame f{momentNow, momentBefore, s.samples_, s.taps_, s.seed_, p.tile};
+  timed(t, "draw candidates", [&] { restir::drawCandidates(p.restir, f, s.restir_); });
+  timed(t, "reuse temporally", [&] { restir::reuseTemporally(p.restir, f, s.restir_); });
+  timed(t, "reuse spatially, shade", [&] { restir::reuseSpatiallyAndShade(p.restir, f, s.restir_, s.radiance_); });
+  timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });
+
+  s.started_ = true;
+  return {
+      s.radiance_, s.albedo_, now.gbuffer.emission, s.samples_, now.gbuffer.guide.view(), before.gbuffer.guide.view(),
+      s.taps_};
+}
+
+namespace {
+
+template <int K>
+void filterFrame(const Shaded& frame, const Variant& v, PlanesView<const float> target, svgf::FilterState<K>& s,
+                 twohistory::GradientState& gradient, twohistory::BlendScratch& scratch, svgf::LevelBuffers& levels,
+                 core::ImageView<float> weight, PassTimes& t, PlanesView<float> out) {
+  s.swapFrames();
+  timed(t, "accumulate", [&] { svgf::accumulate<K>(v.filter, policiesOf<K>(v), frame.taps, frame.radiance, s); });
+  if (usesGradient(v.blend.mode)) {
+    timed(t, "gradient", [&] {
+      gradient.fit(frame.guide.width(), frame.guide.height());
+      const int first = v.blend.pair[0];
+      twohistory::updateGradient<K>(gradientParameters(v), frame.guide, frame.taps, s.samples, s.ledger[1 - s.now],
+                                    first, s.history[first], frame.radiance, gradient);
+    });
+  }
+  timed(t, "variance", [&] { svgf::estimateVariance(v.filter, frame.guide, s); });
+  timed(t, "filter (first level)", [&] { svgf::filterHistories(v.filter, frame.guide, s); });
+  timed(t, "blend", [&] {
+    twohistory::blend<K>(historiesOf(s, gradient.gradient, target), frame.guide, v.blend, scratch, levels.colour[0],
+                         levels.variance[0], weight);
+  });
+  timed(t, "filter (further levels)", [&] {
+    const int last = svgf::filterFurther(v.filter, frame.guide, levels);
+    remodulate(levels.colour[last], frame, out);
+  });
+}
+
+std::variant<svgf::FilterState<1>, svgf::FilterState<2>, svgf::FilterState<3>> makeHistories(const Variant& v,
+                                                                                             int width, int height) {
+  requireConsistent(v);
+  if (v.histories.size() == 3) return svgf::FilterState<3>(width, height);
+  if (v.histories.size() == 2) return svgf::FilterState<2>(width, height);
+  return svgf::FilterState<1>(width, height);
+}
+
+}  // namespace
+
+FilterState::FilterState(const Variant& variant, int width, int height)
+    : histories_(makeHistories(variant, width, height)), levels_(width, height), weight_(width, height) {}
+
+void filter(const Shaded& frame, const Variant& variant, PlanesView<const float> target, FilterState& state,
+            PlanesView<float> out) {
+  std::visit(
+      [&](auto& s) {
+        state.badPixels_ += svgf::dropBadSamples(frame.radiance, frame.samples, s.samples);
+        filterFrame(frame, variant, target, s, state.gradient_, state.scratch_, state.levels_, state.weight_,
+                    state.times_, out);
+      },
+      state.histories_);
+}
+
+void remodulate(PlanesView<const float> radiance, const Shaded& frame, PlanesView<float> out) {
+  core::forEachPixel(out.width(), out.height(), [&](int x, int y) {
+    out.store(x, y, radiance.load(x, y) * frame.albedo.load(x, y) + frame.emission.load(x, y));
+  });
+}
+
+void demodulate(PlanesView<const float> image, const Shaded& frame, PlanesView<float> out) {
+  core::forEachPixel(out.width(), out.height(), [&](int x, int y) {
+    const bool surface = frame.guide.id(x, y) != core::kNoId;
+    out.store(x, y, surface ? (image.load(x, y) - frame.emission.load(x, y)) / frame.albedo.load(x, y) : vec3(0));
+  });
+}
+
+}  // namespace experiments

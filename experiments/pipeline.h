@@ -1,0 +1,100 @@
+// One frame, in the order of the paper: shaded once a seed, filtered once a variant.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+
+#include "core/foveation.h"
+#include "core/gaze.h"
+#include "experiments/stage.h"
+#include "experiments/stopwatch.h"
+#include "experiments/variant.h"
+#include "restir/restir.h"
+#include "twohistory/gradient.h"
+#include "twohistory/reprojection.h"
+
+namespace experiments {
+
+struct ShadeParameters {
+  core::GazeParameters gaze;
+  core::FoveationParameters foveation;
+  twohistory::ReprojectionParameters reprojection;
+  restir::RestirParameters restir;
+  int tile = core::kDefaultTile;  ///< pixels on a side; results do not depend on it
+  Features features = Features::automatic;
+};
+
+/// What the filter gets to know of a frame; frames that another renderer wrote can fill one too. Views only.
+struct Shaded {
+  core::PlanesView<const float> radiance;  ///< demodulated: without emission, divided by albedo
+  core::PlanesView<const float> albedo, emission;
+  core::In<float> samples;  ///< n, 0 = nothing new in this pixel
+  core::Guide guide, guideBefore;
+  core::In<twohistory::Taps> taps;  ///< where each pixel was in the frame before; none in the first frame
+};
+
+/// What shading keeps from frame to frame, for one seed.
+class ShadeState {
+ public:
+  ShadeState(const Stage& stage, const ShadeParameters& parameters, std::uint64_t seed, int width, int height);
+
+  const Instant& now() const { return instants_[now_]; }
+  const Instant& before() const { return instants_[1 - now_]; }
+  core::vec2 gaze() const { return gazeNow_; }
+  core::In<std::uint8_t> fovea() const { return fovea_; }
+  PassTimes& times() { return times_; }
+  std::int64_t badPixels() const { return restir_.badPixels(); }
+
+ private:
+  friend Shaded shade(const Stage& stage, const ShadeParameters& parameters, std::uint32_t frame, ShadeState& state);
+  std::uint64_t seed_;
+  core::Gaze gaze_;
+  core::Foveation foveation_;
+  core::vec2 gazeNow_{0};
+  int now_ = 0;
+  bool started_ = false;
+  std::array<Instant, 2> instants_;
+  core::Image<float> samples_;
+  core::Image<std::uint8_t> fovea_;
+  core::Image<twohistory::Taps> taps_;
+  restir::RestirState restir_;
+  core::Planes radiance_, albedo_;
+  PassTimes times_;
+};
+
+/// Renders frame `frame`; frames must be shaded in order, from any first one. The views stay valid until the next call.
+Shaded shade(const Stage& stage, const ShadeParameters& parameters, std::uint32_t frame, ShadeState& state);
+
+/// Everything that one variant keeps from frame to frame.
+class FilterState {
+ public:
+  FilterState(const Variant& variant, int width, int height);
+
+  PassTimes& times() { return times_; }
+  std::int64_t badPixels() const { return badPixels_; }
+  /// Weight of the blend's first history in the last frame.
+  core::In<float> blendWeight() const { return weight_; }
+
+ private:
+  friend void filter(const Shaded& frame, const Variant& variant, core::PlanesView<const float> target,
+                     FilterState& state, core::PlanesView<float> out);
+  std::variant<svgf::FilterState<1>, svgf::FilterState<2>, svgf::FilterState<3>> histories_;
+  twohistory::GradientState gradient_;
+  twohistory::BlendScratch scratch_;
+  svgf::LevelBuffers levels_;
+  core::Image<float> weight_;
+  std::int64_t badPixels_ = 0;
+  PassTimes times_;
+};
+
+/// Filters one frame into an HDR image. target: demodulated truth for the oracle in frames that have one, else empty.
+void filter(const Shaded& frame, const Variant& variant, core::PlanesView<const float> target, FilterState& state,
+            core::PlanesView<float> out);
+
+/// out = radiance * albedo + emission.
+void remodulate(core::PlanesView<const float> radiance, const Shaded& frame, core::PlanesView<float> out);
+/// The inverse, for references: out = (image - emission) / albedo, 0 where there is no surface.
+void demodulate(core::PlanesView<const float> image, const Shaded& frame, core::PlanesView<float> out);
+
+}  // namespace experiments

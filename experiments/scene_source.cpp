@@ -1,0 +1,61 @@
+#include "experiments/scene_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "core/check.h"
+#include "core/glb.h"
+#include "core/gltf.h"
+#include "core/random.h"
+#include "experiments/scenes/builtin.h"
+
+namespace experiments {
+namespace {
+
+bool isBuiltin(const std::string& name) {
+  const auto names = builtinSceneNames();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// FNV-1a, 64 bits, from a start of its own.
+std::uint64_t fnv(const std::string& bytes, std::uint64_t hash) {
+  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return core::mixBits(hash);
+}
+
+core::Scene loadBuiltin(const std::string& name, std::filesystem::path folder) {
+  if (folder.empty()) folder = std::filesystem::temp_directory_path();
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  const auto file = folder / (name + ".glb");
+  core::saveGlb(builtinScene(name), file);
+  return core::loadGltf(file);
+}
+
+}  // namespace
+
+core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path& folder) {
+  const bool builtin = isBuiltin(nameOrFile);
+  if (!builtin && !std::filesystem::path(nameOrFile).has_extension()) {
+    std::string known;
+    for (const auto& name : builtinSceneNames()) known += (known.empty() ? "" : ", ") + name;
+    throw core::Error(nameOrFile, "neither a built-in scene nor a glTF file",
+                      "give a .gltf or .glb file, or one of " + known);
+  }
+  core::Scene scene = builtin ? loadBuiltin(nameOrFile, folder) : core::loadGltf(nameOrFile);
+  for (const auto& warning : scene.warnings) fmt::print(stderr, "twofold: {}: {}\n", nameOrFile, warning);
+  return scene;
+}
+
+std::string sceneLabel(const std::string& nameOrFile) {
+  return isBuiltin(nameOrFile) ? nameOrFile : std::filesystem::path(nameOrFile).stem().string();
+}
+
+std::string contentHash(const core::Scene& scene) {
+  const std::string bytes = core::glbBytes(scene);
+  return fmt::format("{:016x}{:016x}", fnv(bytes, 0xcbf29ce484222325ull), fnv(bytes, 0x9e3779b97f4a7c15ull));
+}
+
+}  // namespace experiments
