@@ -1,0 +1,66 @@
+// Fresh reservoirs of a whole frame, and the start of a frame for the state.
+#include "restir/kernel.h"
+
+namespace restir {
+namespace {
+
+bool anyWithoutSamples(In<float> samples) {
+  return core::deterministicSum(samples.height, [&](std::int64_t y) {
+           const float* row = samples.row(static_cast<int>(y));
+           return std::any_of(row, row + samples.width, [](float n) { return !(n > 0); }) ? 1.0 : 0.0;
+         }) > 0;
+}
+
+/// Older instants stay only while a reservoir may have waited since them.
+void beginFrame(const Frame& frame, RestirState& state) {
+  std::swap(state.before, state.now);
+  std::swap(state.ledgerBefore, state.ledgerNow);
+  std::swap(state.waitedBefore, state.waited);
+  state.waitsBefore = state.waits;
+  state.waits = anyWithoutSamples(frame.samples);
+  if (state.waits && state.waited.empty())
+    state.waited = state.waitedBefore = Image<Surface>(frame.samples.width, frame.samples.height);
+  if (!state.waitsBefore) state.past.forgetBefore(frame.before.frame);
+  state.past.remember(frame.now);
+}
+
+template <LightFeatures F>
+Reservoir drawPixel(const RestirParameters& p, const Frame& frame, int x, int y) {
+  const Surface& surface = frame.now.surfaces(x, y);
+  const int batches = surface.hit() ? batchesOf(frame.samples(x, y)) : 0;
+  ReservoirBuilder builder;
+  if (batches > 0) {
+    const Target<F> target = partsOf(frame, x, y).target<F>();
+    const Candidates<F> candidates(target, surface, *frame.now.tracer, p.candidates, batches);
+    for (int i = 0; i < batches; ++i) {
+      core::Rng rng(frame.seed, core::Pass::candidates, pixelIndex(frame, x, y), frame.now.frame,
+                    static_cast<std::uint32_t>(i));
+      candidates.addBatch(rng, builder);
+    }
+  }
+  const float confidence = twohistory::freshWeight(p.temporal.policy.weighting, frame.samples(x, y));
+  return builder.finish(confidence, frame.now.frame);
+}
+
+}  // namespace
+
+RestirState::RestirState(int width, int height)
+    : fresh(width, height),
+      before(width, height),
+      now(width, height),
+      ledgerBefore(width, height),
+      ledgerNow(width, height),
+      taps(width, height),
+      shaded(width, height) {}
+
+void drawCandidates(const RestirParameters& p, const Frame& frame, RestirState& state) {
+  beginFrame(frame, state);
+  if (p.reuse == Reuse::none) return;  // shading draws its own, a reservoir a result
+  withLightFeatures(p, frame, [&]<LightFeatures F>() {
+    core::forEachPixel(
+        frame.samples.width, frame.samples.height,
+        [&](int x, int y) { state.fresh(x, y) = drawPixel<F>(p, frame, x, y); }, frame.tile);
+  });
+}
+
+}  // namespace restir

@@ -1,0 +1,84 @@
+// Fresh candidates of one pixel: light samples and BSDF samples, combined by the balance heuristic.
+//
+// p-hat ignores occlusion, so a reservoir must be an unbiased estimate over every light point that p-hat sees, also
+// those that something hides from this pixel: a neighbour or the next frame may see them. Light sampling draws hidden
+// points. A BSDF ray that stopped at its first hit would not, yet the balance heuristic would still count its density
+// there, and the energy of hidden points would be lost on reuse. So a BSDF sample passes through occluders: its ray is
+// followed through the emitters alone, and every one on it is a candidate of that one sample. Then the density of
+// light point y is exactly pdf(direction) x (area cos_light / d^2), hidden or not. With n batches of L light and B BSDF
+// samples, the balance heuristic gives every candidate the weight
+//   [candidates 1]  w = p-hat(y) / (n (L p_light(y) + B p_bsdf(y)))
+#pragma once
+
+#include "core/tracer.h"
+#include "restir/reservoir.h"
+#include "restir/target.h"
+
+namespace restir {
+
+struct CandidateParameters {
+  int lightSamples = 8;  ///< a batch
+  int bsdfSamples = 1;   ///< a batch
+};
+
+/// A BSDF ray meets at most this many emitters; more along one line are dropped (their energy is lost).
+inline constexpr int kMostEmittersOnARay = 64;
+
+/// Calls body(LightSample) for every emitter on the ray, through occluders, nearest first.
+template <class Body>
+void forEachEmitter(const core::Tracer& tracer, const Lights& lights, const vec3& origin, const vec3& direction,
+                    Body&& body) {
+  float minimum = 0;
+  for (int i = 0; i < kMostEmittersOnARay; ++i) {
+    const core::Hit hit = tracer.intersectLights(origin, direction, minimum);
+    if (!hit.hit()) return;
+    body(LightSample{lights.lightOf(hit.instance, hit.primitive), hit.barycentric});
+    minimum = hit.distance * (1 + 0x1p-20f);  // beyond the rounding with which Embree would find it again
+  }
+}
+
+/// Streams batches into one builder, as part of `total` batches in all.
+template <LightFeatures F>
+class Candidates {
+ public:
+  Candidates(const Target<F>& target, const Surface& surface, const core::Tracer& tracer,
+             const CandidateParameters& parameters, int total)
+      : target_(target),
+        tracer_(tracer),
+        parameters_(parameters),
+        origin_(core::offsetOrigin(surface.position, surface.geometricNormal)),
+        total_(total) {}
+
+  void addBatch(core::Rng& rng, ReservoirBuilder& builder) const {
+    const Lights& lights = target_.lights();
+    if (lights.empty()) return;
+    for (int i = 0; i < parameters_.lightSamples; ++i) add(lights.sample(rng), rng, builder);
+    if (lights.triangleCount() == 0) return;
+    for (int i = 0; i < parameters_.bsdfSamples; ++i) {
+      const core::BsdfSample s = target_.bsdf().sample(rng.uniform3());
+      if (s.pdf > 0)
+        forEachEmitter(tracer_, lights, origin_, s.direction, [&](const LightSample& y) { add(y, rng, builder); });
+    }
+  }
+
+ private:
+  void add(const LightSample& y, core::Rng& rng, ReservoirBuilder& builder) const {
+    const Incident in = target_.incident(y);
+    const vec3 flux = in.flux();
+    if (!(core::maxComponent(flux) > 0)) return;
+    const BsdfValue bsdf = target_.bsdf().value(in.direction);
+    const float target = core::luminance(bsdf.f * flux);
+    const double bsdfPdf = target_.lights().isArea(y.light) ? double{bsdf.pdf} * in.geometry : 0.0;
+    const double density =
+        parameters_.lightSamples * double{target_.lights().pdf(y.light)} + parameters_.bsdfSamples * bsdfPdf;
+    builder.add(y, target, target / (total_ * density), rng);  // [candidates 1]
+  }
+
+  const Target<F>& target_;
+  const core::Tracer& tracer_;
+  CandidateParameters parameters_;
+  vec3 origin_;
+  double total_;
+};
+
+}  // namespace restir

@@ -1,0 +1,80 @@
+#include "restir/direct.h"
+
+#include "core/material.h"
+#include "restir/visibility.h"
+
+namespace restir {
+namespace {
+
+using core::Incident;
+using core::LightFeatures;
+using core::Lights;
+using core::LightSample;
+using core::Rng;
+using core::vec3;
+
+/// A surface, its reflection to the camera, and what lights it.
+struct Receiver {
+  const core::Surface& surface;
+  core::Bsdf bsdf;
+  vec3 origin;
+  const Lights& lights;
+  const core::Tracer& tracer;
+};
+
+/// f cos L_e G over the densities of both techniques: what either adds to the estimate, before visibility.
+template <LightFeatures F>
+vec3 weighted(const Receiver& r, const LightSample& y, const Incident& in) {
+  const vec3 flux = in.flux();
+  if (!(core::maxComponent(flux) > 0)) return vec3(0);
+  const core::BsdfValue bsdf = r.bsdf.value(in.direction);
+  const float bsdfPdf = r.lights.isArea(y.light) ? bsdf.pdf * in.geometry : 0.0f;
+  return bsdf.f * flux / (r.lights.pdf(y.light) + bsdfPdf);  // [Veach 97, 9.2.2] balance heuristic, one sample each
+}
+
+template <LightFeatures F>
+vec3 lightSample(const Receiver& r, Rng& rng) {
+  const LightSample y = r.lights.sample(rng);
+  const Incident in = r.lights.template incident<F>(y, r.surface.position);
+  const vec3 value = weighted<F>(r, y, in);
+  return core::maxComponent(value) > 0 && visible(r.tracer, r.surface, in) ? value : vec3(0);
+}
+
+template <LightFeatures F>
+vec3 bsdfSample(const Receiver& r, Rng& rng) {
+  const core::BsdfSample s = r.bsdf.sample(rng.uniform3());
+  if (!(s.pdf > 0)) return vec3(0);
+  const core::Hit hit = r.tracer.intersect(r.origin, s.direction);
+  const std::uint32_t light = hit.hit() ? r.lights.lightOf(hit.instance, hit.primitive) : core::kNoLight;
+  if (light == core::kNoLight) return vec3(0);
+  const LightSample y{light, hit.barycentric};
+  return weighted<F>(r, y, r.lights.template incident<F>(y, r.surface.position));
+}
+
+template <LightFeatures F>
+vec3 mean(const Receiver& r, int samples, std::uint64_t stream, std::uint32_t pixel, std::uint32_t frame) {
+  vec3 sum(0);
+  for (int i = 0; i < samples; ++i) {
+    Rng rng(stream, core::Pass::reference, pixel, frame, static_cast<std::uint32_t>(i));
+    sum += lightSample<F>(r, rng);
+    if (r.lights.triangleCount() > 0) sum += bsdfSample<F>(r, rng);
+  }
+  return sum / static_cast<float>(samples);
+}
+
+}  // namespace
+
+vec3 meanDirect(const core::Moment& moment, const core::Surface& surface, int samples, std::uint64_t stream,
+                std::uint32_t pixel) {
+  CHECK_GE(samples, 1);
+  if (!surface.hit() || moment.lights->empty()) return vec3(0);
+  const Receiver receiver{surface, core::Bsdf(surface, normalize(moment.cameraPosition - surface.position)),
+                          core::offsetOrigin(surface.position, surface.geometricNormal), *moment.lights,
+                          *moment.tracer};
+  vec3 result(0);
+  core::withFeatures(moment.lights->features(),
+                     [&]<LightFeatures F>() { result = mean<F>(receiver, samples, stream, pixel, moment.frame); });
+  return result;
+}
+
+}  // namespace restir

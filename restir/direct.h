@@ -1,0 +1,16 @@
+// Direct light without reuse: the baseline and the references. One sample is a light sample drawn by power and a BSDF
+// sample, combined by the balance heuristic, with visibility from rays that stop at the first hit.
+// Source: Veach, "Robust Monte Carlo Methods for Light Transport Simulation" (1997), section 9.2. Shares no choice with
+// ReSTIR beyond lights and materials.
+#pragma once
+
+#include "core/moment.h"
+
+namespace restir {
+
+/// Mean of `samples` >= 1 independent samples of the light that a surface reflects to the camera (not demodulated,
+/// emission excluded). stream: different streams are independent; pixel: row-major index.
+core::vec3 meanDirect(const core::Moment& moment, const core::Surface& surface, int samples, std::uint64_t stream,
+                      std::uint32_t pixel);
+
+}  // namespace restir

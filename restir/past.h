@@ -1,0 +1,39 @@
+// The instants of recent frames, for reservoirs that waited through frames without samples.
+#pragma once
+
+#include <array>
+#include <memory>
+
+#include "core/moment.h"
+
+namespace restir {
+
+/// What of a past frame a target needs besides the surface.
+struct PastMoment {
+  std::uint32_t frame = 0;
+  core::vec3 viewer{0};
+  std::shared_ptr<const core::Lights> lights;  ///< null: nothing remembered
+};
+
+/// A ring of the last kFrames instants. A reservoir that waited longer is dropped, whatever it holds.
+class PastMoments {
+ public:
+  static constexpr std::uint32_t kFrames = 16;
+
+  void remember(const core::Moment& now) { ring_[now.frame % kFrames] = {now.frame, now.cameraPosition, now.lights}; }
+  /// The instant of a frame, or null.
+  const PastMoment* find(std::uint32_t frame) const {
+    const PastMoment& past = ring_[frame % kFrames];
+    return past.lights && past.frame == frame ? &past : nullptr;
+  }
+  /// Releases the lights of frames before `frame`.
+  void forgetBefore(std::uint32_t frame) {
+    for (PastMoment& past : ring_)
+      if (past.frame < frame) past.lights.reset();
+  }
+
+ private:
+  std::array<PastMoment, kFrames> ring_;
+};
+
+}  // namespace restir

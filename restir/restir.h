@@ -1,0 +1,132 @@
+// ReSTIR direct lighting with a sample count of its own in every pixel: parameters, state, and the passes in order.
+//
+//   drawCandidates           n batches of candidates a pixel into a fresh reservoir of confidence weight(n)
+//   reuseTemporally          resamples it with the pixel's history, whose target is the previous frame's
+//   reuseSpatiallyAndShade   n times: resamples with neighbours, one shadow ray; averages
+//
+// Rules that keep it unbiased: taps, neighbours and confidences follow from geometry, counts and random numbers, never
+// from a reservoir's sample; null samples keep their confidence; what is kept for the next frame is the reservoir
+// before spatial reuse; shadow rays are never written back. Where n = 0 a reservoir waits, and remembers the surface,
+// viewer and lights that its target had.
+//
+// Sources: Bitterli et al. 2020; Lin et al. 2022 (see mis.h). Sample counts are this project's.
+#pragma once
+
+#include "core/image.h"
+#include "core/moment.h"
+#include "restir/candidates.h"
+#include "restir/mis.h"
+#include "restir/past.h"
+#include "restir/spatial.h"
+#include "twohistory/ledger.h"
+#include "twohistory/taps.h"
+
+namespace restir {
+
+using core::Image;
+using core::In;
+using core::Moment;
+using core::PlanesView;
+using twohistory::Choice;
+using twohistory::Ledger;
+using twohistory::Taps;
+
+/// none: resampled importance sampling alone, n independent results a pixel.
+enum class Reuse { none, temporal, spatial, both };
+
+/// automatic: kernels are compiled for the lights that the scene has. all: for every kind, to measure what that costs.
+enum class Features { automatic, all };
+
+struct TemporalParameters {
+  twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 20};
+  Choice tap = Choice::stochastic;
+  /// Targets of the history: with the surface, viewer and lights it had (unbiased), or with this frame's (cheaper).
+  bool previousSurface = true, previousCamera = true, previousLights = true;
+};
+
+struct RestirParameters {
+  Reuse reuse = Reuse::both;
+  Mis mis = Mis::balance;
+  CandidateParameters candidates;
+  TemporalParameters temporal;
+  SpatialParameters spatial;
+  Features features = Features::automatic;
+  bool demodulate = true;  ///< divide radiance by demodulationAlbedo()
+};
+
+/// One frame's input; all images have one size. Whoever renders keeps now's and before's owners alive.
+struct Frame {
+  Moment now, before;  ///< before: the frame before; equal to now in the first frame
+  In<float> samples;   ///< n >= 0, rounded to whole batches; 0 = nothing is sampled
+  In<Taps> taps;       ///< into the frame before; no valid tap = no history
+  std::uint64_t seed = 0;
+  int tile = core::kDefaultTile;
+};
+
+/// Everything that one sequence keeps from frame to frame. Allocates nothing after the first frame (and, once, in the
+/// first frame that has a pixel without samples).
+struct RestirState {
+  RestirState() = default;
+  RestirState(int width, int height);
+
+  /// Pixels since the start whose radiance was not finite; they counted as n = 0.
+  std::int64_t badPixels() const { return bad; }
+
+  Image<Reservoir> fresh, before, now;
+  Image<Ledger<1>> ledgerBefore, ledgerNow;
+  Image<Taps> taps;                     ///< the one tap that was chosen
+  Image<Surface> waitedBefore, waited;  ///< surface of a reservoir that waits; empty until one does
+  Image<float> shaded;  ///< n that a pixel's radiance stands for: 0 without surface, samples or finite result
+  PastMoments past;
+  bool waitsBefore = false, waits = false;  ///< some pixel of the frame had n = 0
+  std::int64_t bad = 0;
+};
+
+void drawCandidates(const RestirParameters& parameters, const Frame& frame, RestirState& state);
+void reuseTemporally(const RestirParameters& parameters, const Frame& frame, RestirState& state);
+/// radiance: reflected light, emission excluded, 0 where there is no surface. A pixel with n = 0 gets the mean of its
+/// similar neighbours within a few pixels that have samples, else 0.
+void reuseSpatiallyAndShade(const RestirParameters& parameters, const Frame& frame, RestirState& state,
+                            PlanesView<float> radiance);
+
+template <class V>
+void describe(V& v, CandidateParameters& p) {
+  v("lightSamples", p.lightSamples, "light samples a batch; a pixel of n samples draws n batches", 1, 4096);
+  v("bsdfSamples", p.bsdfSamples, "BSDF samples a batch", 0, 4096);
+}
+
+template <class V>
+void describe(V& v, TemporalParameters& p) {
+  v("policy", p.policy, "how confidence is weighted and forgotten");
+  v.choice("tap", p.tap, {{"best", Choice::best}, {"stochastic", Choice::stochastic}},
+           "which of the reprojected taps gives the reservoir");
+  v("previousSurface", p.previousSurface, "history targets use the surface they had, else this frame's (biased)");
+  v("previousCamera", p.previousCamera, "history targets use the viewer they had, else this frame's (biased)");
+  v("previousLights", p.previousLights, "history targets use the lights they had, else this frame's (biased)");
+}
+
+template <class V>
+void describe(V& v, SpatialParameters& p) {
+  v("neighbours", p.neighbours, "reservoirs merged with a pixel's own", 0, kMostNeighbours);
+  v("radius", p.radius, "of the disk they come from, fraction of the image height", 0.0, 1.0);
+  v("normalCosine", p.normalCosine, "least cosine between the normals", -1.0, 1.0);
+  v("planeDistance", p.planeDistance, "most distance from the pixel's plane, fraction of its distance to the camera",
+    0.0, 1e6);
+}
+
+template <class V>
+void describe(V& v, RestirParameters& p) {
+  v.choice("reuse", p.reuse,
+           {{"none", Reuse::none}, {"temporal", Reuse::temporal}, {"spatial", Reuse::spatial}, {"both", Reuse::both}},
+           "of reservoirs; none is resampled importance sampling alone");
+  v.choice("mis", p.mis, {{"constant", Mis::constant}, {"balance", Mis::balance}},
+           "weights of merging; constant is biased");
+  v("candidates", p.candidates, "fresh candidates");
+  v("temporal", p.temporal, "reuse from the frame before");
+  v("spatial", p.spatial, "reuse from neighbours");
+  v.choice("features", p.features, {{"auto", Features::automatic}, {"all", Features::all}},
+           "kinds of light that kernels are compiled for");
+  v("demodulate", p.demodulate, "divide radiance by the albedo");
+}
+
+}  // namespace restir

@@ -1,0 +1,132 @@
+// Spatial reuse and shading: n results a pixel, each with neighbours and a shadow ray of its own, averaged.
+#include "restir/kernel.h"
+#include "restir/visibility.h"
+
+namespace restir {
+namespace {
+
+/// A pixel that is shaded: its target and whatever its results share.
+template <LightFeatures F>
+struct Pixel {
+  const RestirParameters& parameters;
+  const Frame& frame;
+  const RestirState& state;
+  core::ivec2 at;
+  const Surface& surface;
+  Target<F> target;
+
+  core::Rng rng(core::Pass pass, int result) const {
+    return {frame.seed, pass, pixelIndex(frame, at.x, at.y), frame.now.frame, static_cast<std::uint32_t>(result)};
+  }
+};
+
+template <LightFeatures F>
+vec3 shadeSample(const Pixel<F>& pixel, const Reservoir& r) {
+  if (!(r.unbiasedWeight > 0)) return vec3(0);
+  const Incident in = pixel.target.incident(r.sample);
+  const vec3 radiance = r.unbiasedWeight * pixel.target.radiance(in);
+  return core::maxComponent(radiance) > 0 && visible(*pixel.frame.now.tracer, pixel.surface, in) ? radiance : vec3(0);
+}
+
+/// Resampled importance sampling alone: one batch.
+template <LightFeatures F>
+Reservoir drawBatch(const Pixel<F>& pixel, int result) {
+  const Candidates<F> candidates(pixel.target, pixel.surface, *pixel.frame.now.tracer, pixel.parameters.candidates, 1);
+  core::Rng rng = pixel.rng(core::Pass::candidates, result);
+  ReservoirBuilder builder;
+  candidates.addBatch(rng, builder);
+  return builder.finish(1, pixel.frame.now.frame);
+}
+
+/// The pixel's reservoir merged with those of chosen neighbours, each with the target that it had.
+template <LightFeatures F>
+Reservoir reuseNeighbours(const Pixel<F>& pixel, int result) {
+  const RestirState& state = pixel.state;
+  const Moment& now = pixel.frame.now;
+  core::Rng rng = pixel.rng(core::Pass::spatial, result);
+  const Neighbours neighbours = chooseNeighbours(now, pixel.at, pixel.parameters.spatial, rng);
+  InlineVector<Source<Target<F>>, kMostNeighbours + 1> sources;
+  sources.add(state.now(pixel.at.x, pixel.at.y), pixel.target);
+  for (int i = 0; i < neighbours.count; ++i) {
+    const Reservoir& r = state.now.view().at(neighbours.pixel[i]);
+    const TargetParts parts = partsOf(r, neighbours.pixel[i], now, state.waited.view(), state.past);
+    sources.add(r, parts.target<F>());
+  }
+  return mergeReservoirs<Target<F>>(sources, pixel.parameters.mis, now.frame, rng);
+}
+
+/// Mean of the results. One reservoir without neighbours gives one result, however many samples it stands for.
+template <LightFeatures F>
+vec3 shadePixel(const Pixel<F>& pixel, int batches) {
+  const Reuse reuse = pixel.parameters.reuse;
+  if (reuse == Reuse::temporal) return shadeSample(pixel, pixel.state.now(pixel.at.x, pixel.at.y));
+  vec3 sum(0);
+  for (int i = 0; i < batches; ++i)
+    sum += shadeSample(pixel, reuse == Reuse::none ? drawBatch(pixel, i) : reuseNeighbours(pixel, i));
+  return sum / static_cast<float>(batches);
+}
+
+/// Radiance of one pixel, and the samples that it stands for.
+template <LightFeatures F>
+void storePixel(const RestirParameters& p, const Frame& frame, RestirState& state, int x, int y,
+                PlanesView<float> radiance) {
+  const Surface& surface = frame.now.surfaces(x, y);
+  const int batches = surface.hit() ? batchesOf(frame.samples(x, y)) : 0;
+  vec3 colour(0);
+  if (batches > 0) {
+    const Pixel<F> pixel{p, frame, state, {x, y}, surface, partsOf(frame, x, y).target<F>()};
+    colour = shadePixel(pixel, batches);
+    if (p.demodulate) colour /= core::demodulationAlbedo(surface);
+  }
+  const bool good = core::isFinite(colour);
+  radiance.store(x, y, good ? colour : vec3(0));
+  state.shaded(x, y) = batches > 0 && good ? frame.samples(x, y) : 0.0f;
+}
+
+/// Mean of similar neighbours that have samples, 0 if there are none. Reads only pixels with samples, and is called for
+/// those without.
+vec3 fillPixel(const Frame& frame, In<float> shaded, PlanesView<const float> radiance, int x, int y) {
+  constexpr int kReach = 3;
+  const SpatialParameters likeness;
+  vec3 sum(0);
+  float count = 0;
+  for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, shaded.height - 1); ++v)
+    for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, shaded.width - 1); ++u) {
+      if (!(shaded(u, v) > 0)) continue;
+      if (!similar(frame.now.surfaces(x, y), frame.now.surfaces(u, v), frame.now.cameraPosition, likeness)) continue;
+      sum += radiance.load(u, v);
+      ++count;
+    }
+  return count > 0 ? sum / count : vec3(0);
+}
+
+std::int64_t countBad(const Frame& frame, In<float> shaded) {
+  return std::llround(core::deterministicSum(shaded.height, [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    int bad = 0;
+    for (int x = 0; x < shaded.width; ++x)
+      bad += frame.now.surfaces(x, y).hit() && frame.samples(x, y) > 0 && !(shaded(x, y) > 0);
+    return static_cast<double>(bad);
+  }));
+}
+
+}  // namespace
+
+void reuseSpatiallyAndShade(const RestirParameters& p, const Frame& frame, RestirState& state,
+                            PlanesView<float> radiance) {
+  withLightFeatures(p, frame, [&]<LightFeatures F>() {
+    core::forEachPixel(
+        radiance.width(), radiance.height(), [&](int x, int y) { storePixel<F>(p, frame, state, x, y, radiance); },
+        frame.tile);
+  });
+  core::forEachPixel(
+      radiance.width(), radiance.height(),
+      [&](int x, int y) {
+        if (frame.now.surfaces(x, y).hit() && !(state.shaded(x, y) > 0))
+          radiance.store(x, y, fillPixel(frame, state.shaded, radiance, x, y));
+      },
+      frame.tile);
+  state.bad += countBad(frame, state.shaded);
+}
+
+}  // namespace restir
