@@ -57,18 +57,18 @@ void addDoor(SceneBuilder& scene) {
 /// Panes of the next room's window, of different tints, turned towards the slit.
 void addWindow(SceneBuilder& scene) {
   const vec3 tints[] = {{1, 0.9f, 0.72f}, {1, 0.82f, 0.6f}, {0.85f, 0.9f, 1}};
-  const int window = scene.node("window", {{2.2f, 1.3f, -6}, vec3(1), turn(-30)});
+  const int window = scene.node("window", {{1.6f, 1.3f, -4.8f}, vec3(1), turn(-30)});
   for (int row = 0; row < 3; ++row) {
-    const int pane = scene.mesh("pane", quadMesh(), scene.material(emitter("pane", 260.0f * tints[row])));
+    const int pane = scene.mesh("pane", quadMesh(), scene.material(emitter("pane", 130.0f * tints[row])));
     for (int column = 0; column < 2; ++column)
-      scene.add("pane", pane, {{0.42f * (column - 0.5f), 0.6f * (row - 1), 0}, {0.38f, 0.55f, 1}, turn(0), window});
+      scene.add("pane", pane, {{0.3f * (column - 0.5f), 0.44f * (row - 1), 0}, {0.27f, 0.4f, 1}, turn(0), window});
   }
 }
 
 /// So that what the slit does not light is not black: weak against the window.
 void addCeilingLamp(SceneBuilder& scene) {
-  const int lamp = scene.mesh("ceiling lamp", quadMesh(), scene.material(emitter("ceiling lamp", {5, 6, 8})));
-  scene.add("ceiling lamp", lamp, {{0.3f, kHeight - 0.02f, 0}, {0.4f, 0.4f, 1}, turn(90, {1, 0, 0})});
+  const int lamp = scene.mesh("ceiling lamp", quadMesh(), scene.material(emitter("ceiling lamp", {8, 9, 11})));
+  scene.add("ceiling lamp", lamp, {{0.3f, kHeight - 0.02f, 0}, {0.5f, 0.5f, 1}, turn(90, {1, 0, 0})});
 }
 
 /// What stands in the fan of light.
@@ -84,7 +84,7 @@ void addObjects(SceneBuilder& scene) {
   scene.add("glazed ball", glaze, {{-1.15f, 0.88f, -0.9f}, vec3(0.36f)});
   scene.add("crate", crate, {{-1.9f, 0.25f, 0.15f}, vec3(0.5f), turn(25)});
   scene.add("clay ball", clay, {{-1.9f, 0.65f, 0.15f}, vec3(0.3f)});
-  scene.add("steel ball", ball, {{-0.75f, 0.16f, -0.1f}, vec3(0.32f)});
+  scene.add("steel ball", ball, {{-1.55f, 0.16f, -0.5f}, vec3(0.32f)});
 }
 
 }  // namespace

@@ -30,8 +30,8 @@ void addWalls(SceneBuilder& scene) {
 
 void addBoxes(SceneBuilder& scene) {
   const int box = scene.mesh("box", boxMesh(), scene.material(matte("box", {0.73f, 0.71f, 0.68f})));
-  scene.add("tall box", box, {{-0.34f, 0.6f, -0.3f}, {0.6f, 1.2f, 0.6f}, turn(17)});
-  scene.add("short box", box, {{0.37f, 0.3f, 0.32f}, {0.6f, 0.6f, 0.6f}, turn(-17)});
+  scene.add("tall box", box, {{-0.36f, 0.6f, -0.4f}, {0.6f, 1.2f, 0.6f}, turn(17)});
+  scene.add("short box", box, {{0.4f, 0.3f, 0.0f}, {0.6f, 0.6f, 0.6f}, turn(-17)});
 }
 
 }  // namespace
@@ -40,9 +40,10 @@ core::Scene cornellScene() {
   SceneBuilder scene("cornell");
   addWalls(scene);
   addBoxes(scene);
-  const int lamp = scene.mesh("lamp", quadMesh(), scene.material(emitter("lamp", {17, 12, 6})));
-  scene.add("lamp", lamp, {{0, kSide - 0.005f, 0}, {0.5f, 0.5f, 1}, turn(90, {1, 0, 0})});
-  scene.camera(scene.node("camera", {{0, kSide / 2, 2.3f}}), 45);
+  const int lamp = scene.mesh("lamp", quadMesh(), scene.material(emitter("lamp", {30, 22, 12})));
+  scene.add("lamp", lamp, {{0, kSide - 0.005f, 0.5f}, {0.5f, 0.5f, 1}, turn(90, {1, 0, 0})});
+  const vec3 eye(0, 1.1f, 2.3f);
+  scene.camera(scene.node("camera", {eye, vec3(1), lookAt(eye, {0, 0.8f, -1})}), 45);
   return scene.take();
 }
 

@@ -14,7 +14,7 @@ using core::vec4;
 constexpr float kStreetLength = 34, kStreetMiddle = -12;  // metres, along z
 
 void addStreet(SceneBuilder& scene) {
-  core::Material wet = matte("wet paving", vec3(0.7f));
+  core::Material wet = matte("wet paving", vec3(0.8f));
   wet.baseColorTexture = scene.texture(pavingTexture());
   wet.metallicRoughnessTexture = scene.texture(wetnessTexture());
   const int street = scene.mesh("street", quadMesh({12, 34}), scene.material(wet));
@@ -70,6 +70,7 @@ void addStall(SceneBuilder& scene, const StallParts& parts, int index, const cor
   scene.add("shelf", parts.wood, place({0, 1.0f, -0.75f}, {2.3f, 2.0f, 0.08f}));
   for (float x : {-1.15f, 1.15f}) scene.add("post", parts.wood, place({x, 1.15f, 0.5f}, {0.07f, 2.3f, 0.07f}));
   scene.add("awning", parts.cloth[index % 3], place({0, kAwningHeight + 0.12f, -0.1f}, {2.6f, 0.03f, 1.6f}, 14));
+  scene.add("valance", parts.cloth[index % 3], place({0, kAwningHeight - 0.2f, 0.67f}, {2.6f, 0.26f, 0.02f}));
   for (int i = 0; i < 3; ++i) {
     const float x = 0.76f * static_cast<float>(i - 1);
     scene.add("fruit", parts.goods[(index + i) % 4], place({x, 0.84f, 0.2f}, {0.66f, 0.9f, 0.6f}));
@@ -85,7 +86,7 @@ void addStalls(SceneBuilder& scene) {
   for (int i = 0; i < 2 * kStalls; ++i) {
     const float side = i % 2 ? 1 : -1;
     core::Node at;
-    at.translation = {side * (kStreetHalf + 0.9f), 0, -kStallSpacing * static_cast<float>(i / 2)};
+    at.translation = {side * (kStreetHalf + 0.9f), 0, stallZ(i)};
     at.rotation = turn(-90 * side);
     addStall(scene, parts, i, at);
   }

@@ -59,25 +59,36 @@ void addBulbs(SceneBuilder& scene) {
     for (int bulb = 0; bulb < kBulbs; ++bulb) {
       const float t = 2 * (static_cast<float>(bulb) + 0.5f) / kBulbs - 1;  // -1 .. 1 across the street
       const vec3 position(kStreetHalf * t, 2.75f + 0.6f * t * t, -1.5f - 3.4f * static_cast<float>(string));
-      scene.add("bulb", meshes[(bulb + string) % 6], {position, vec3(0.08f)});
+      scene.add("bulb", meshes[(bulb + string) % 6], {position, vec3(0.12f)});
     }
 }
 
 /// Paper lanterns under the awnings' fronts; every other one swings.
 void addLanterns(SceneBuilder& scene) {
-  const int materials[] = {scene.material(emitter("paper lantern", {9, 5.2f, 2.2f})),
-                           flickering(scene, emitter("candle lantern", {7, 3.2f, 0.9f}), candle(1)),
-                           scene.material(emitter("red lantern", {7, 0.8f, 0.4f})),
-                           flickering(scene, emitter("teal lantern", {0.6f, 4, 4.2f}), pulse(2.4f))};
+  const int materials[] = {scene.material(emitter("paper lantern", {14, 8.4f, 3.6f})),
+                           flickering(scene, emitter("candle lantern", {12, 5.6f, 1.6f}), candle(1)),
+                           scene.material(emitter("red lantern", {12, 1.4f, 0.8f})),
+                           flickering(scene, emitter("teal lantern", {1, 7, 7.4f}), pulse(2.4f))};
   int meshes[4];
   for (int i = 0; i < 4; ++i) meshes[i] = scene.mesh("lantern", sphereMesh(1), materials[i]);
   for (int i = 0; i < 2 * kStalls; ++i) {
-    const float side = i % 2 ? 1 : -1, z = -kStallSpacing * static_cast<float>(i / 2) + 0.5f;
+    const float side = i % 2 ? 1 : -1, z = stallZ(i) + 0.5f;
     const int hook = scene.node("hook", {{side * (kStreetHalf - 0.25f), kAwningHeight + 0.1f, z}});
     if (i % 4 < 2)
       scene.nodeAt(hook).rotationTrack =
           swing(kMarketSeconds, 14, 1.6f, hashed(i, 5), normalize(vec3(1, 0, hashed(i, 6))));
-    scene.add("lantern", meshes[(i + i / 4) % 4], {{0, -0.4f, 0}, {0.26f, 0.32f, 0.26f}, turn(0), hook});
+    scene.add("lantern", meshes[(i + i / 4) % 4], {{0, -0.45f, 0}, {0.38f, 0.44f, 0.38f}, turn(0), hook});
+  }
+}
+
+/// A bare strip under every awning lights the goods.
+void addStrips(SceneBuilder& scene) {
+  const vec3 tints[] = {{22, 19, 14}, {17, 19, 21}, {20, 14, 8}};
+  int strips[3];
+  for (int i = 0; i < 3; ++i) strips[i] = scene.mesh("strip", quadMesh(), scene.material(emitter("strip", tints[i])));
+  for (int i = 0; i < 2 * kStalls; ++i) {
+    const vec3 position((i % 2 ? 1 : -1) * (kStreetHalf + 0.9f), kAwningHeight - 0.1f, stallZ(i));
+    scene.add("strip", strips[i % 3], {position, {0.12f, 1.1f, 1}, turn(90, {1, 0, 0})});
   }
 }
 
@@ -137,7 +148,7 @@ void addPunctual(SceneBuilder& scene) {
   scene.light(spot, scene.node("street lamp", {pole, vec3(1), lookAt(pole, {0.3f, 0, -8.5f})}));
   core::PunctualLight moon;
   moon.type = core::PunctualLight::Type::directional;
-  moon.intensity = {0.05f, 0.07f, 0.1f};
+  moon.intensity = {0.22f, 0.28f, 0.4f};
   scene.light(moon, scene.node("moon", {{0, 20, 0}, vec3(1), lookAt({6, 20, 9}, {0, 0, 0})}));
 }
 
@@ -146,6 +157,7 @@ void addPunctual(SceneBuilder& scene) {
 void addMarketLights(SceneBuilder& scene) {
   addBulbs(scene);
   addLanterns(scene);
+  addStrips(scene);
   addSigns(scene);
   addWalkers(scene);
   addPunctual(scene);

@@ -1,5 +1,7 @@
 #include "experiments/scenes/patterns.h"
 
+#include "core/random.h"
+
 namespace experiments {
 
 using core::Texture;
@@ -41,10 +43,8 @@ float valueNoise(float x, float y, int cells) {
 }  // namespace
 
 float hashed(std::uint32_t key, std::uint32_t stream) {
-  std::uint64_t x = (std::uint64_t{stream} << 32 | key) + 0x9E3779B97F4A7C15u;  // SplitMix64's finaliser
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return static_cast<float>((x ^ (x >> 31)) >> 40) * 0x1p-24f;
+  const std::uint64_t keys = std::uint64_t{stream} << 32 | key;
+  return static_cast<float>(core::mixBits(keys + 0x9E3779B97F4A7C15u) >> 40) * 0x1p-24f;  // SplitMix64
 }
 
 Texture paint(int size, const std::function<vec3(int, int)>& color, bool linear) {
@@ -80,7 +80,7 @@ Texture plankTexture() {
 Texture pavingTexture() {
   return paint(64, [](int x, int y) {
     const int stone = brickAt(x, y, 32, 16, 64);
-    return stone < 0 ? vec3(0.03f) : toned(vec3(0.16f, 0.16f, 0.18f), stone, 0.5f);
+    return stone < 0 ? vec3(0.06f) : toned(vec3(0.34f, 0.33f, 0.36f), stone, 0.5f);
   });
 }
 
