@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "experiments/json_text.h"
 #include "twohistory/combination.h"
@@ -96,15 +97,16 @@ Json predictionJson(const Prediction& p, double n) {
 }
 
 std::vector<double> parseCounts(const std::string& text, const std::string& where) {
-  constexpr const char* kSeparators = ", \t\r\n";
   std::vector<double> counts;
-  for (std::size_t end = 0;;) {
-    const std::size_t begin = text.find_first_not_of(kSeparators, end);
-    if (begin == std::string::npos) break;
-    end = std::min(text.find_first_of(kSeparators, begin), text.size());
-    counts.push_back(parseCount(text.substr(begin, end - begin), where));
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    std::istringstream field(text.substr(begin, end - begin));
+    const std::size_t before = counts.size();
+    for (std::string word; field >> word;) counts.push_back(parseCount(word, where));
+    if (counts.size() == before)
+      throw core::UsageError(where, "holds no sample count where one should be", "give a list such as 1,1,8,0,1");
+    begin = end + 1;
   }
-  if (counts.empty()) throw core::UsageError(where, "holds no sample counts", "give at least one, such as 1,1,8,0,1");
   return counts;
 }
 
