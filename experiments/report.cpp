@@ -73,8 +73,7 @@ std::string definitions(const Results& results) {
 }
 
 std::string figureHtml(const Figure& figure) {
-  std::string html = fmt::format("<figure><h3>{} <span class=\"faint\">frame {}</span></h3>\n<div class=\"panels\">\n",
-                                 escaped(figure.caption), figure.frame);
+  std::string html = "<figure><h3>" + escaped(figure.caption) + "</h3>\n<div class=\"panels\">\n";
   for (const Panel& panel : figure.panels)
     html += fmt::format("<div class=\"panel\"><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><p>{0}</p></div>\n",
                         escaped(panel.label), base64(panel.png));

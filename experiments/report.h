@@ -19,7 +19,7 @@ struct Panel {
 
 /// Images that belong side by side, such as every variant's frame, or every variant's error map.
 struct Figure {
-  std::string caption;
+  std::string caption;  ///< says scene and frame
   int frame = 0;
   std::vector<Panel> panels;
   std::optional<ErrorScale> scale;  ///< error maps: their common colour scale, drawn as a legend
