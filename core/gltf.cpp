@@ -5,10 +5,10 @@
 #include <cmath>
 #include <optional>
 
-#include "core/check.h"
 #include "core/files.h"
 #include "core/gltf_assemble.h"
 #include "core/gltf_container.h"
+#include "core/gltf_disk.h"
 #include "core/gltf_image.h"
 #include "core/gltf_support.h"
 #include "core/gltf_track.h"
@@ -23,38 +23,6 @@ using tinygltf::Value;
 const char* const kRepair = "repair the file or export it again";
 const char* const kLightExtension = "KHR_lights_punctual";
 
-/// A parser's complaint as one line.
-Error unreadable(const std::string& where, std::string complaint) {
-  while (!complaint.empty() && std::isspace(static_cast<unsigned char>(complaint.back()))) complaint.pop_back();
-  std::replace(complaint.begin(), complaint.end(), '\n', ' ');
-  if (complaint.empty()) complaint = "an item lacks what it must have";
-  return {where, "cannot be read as glTF (" + complaint.substr(0, 300) + ")", kRepair};
-}
-
-/// tinygltf's view of the disk. Its own functions also search the working directory and allocate before they check.
-struct Folder {
-  std::string where, path;
-};
-
-/// tinygltf asks for folder/uri first; that one must be there.
-bool fileExists(const std::string& path, void* user) {
-  const Folder& folder = *static_cast<const Folder*>(user);
-  const std::string uri = path.substr(folder.path.size() + 1);
-  if (uri.rfind("data:", 0) == 0) throw Error(folder.where, "has a data: URI that cannot be decoded", kRepair);
-  if (uri.empty() || uri[0] == '/' || uri.find(':') < uri.find('/'))
-    throw Error(folder.where, "refers to '" + uri.substr(0, 80) + "'", "refer to files by a path relative to it");
-  if (!fs::is_regular_file(path)) throw Error(folder.where, "its file " + uri + " is missing", "put it at " + path);
-  return true;
-}
-
-std::string samePath(const std::string& path, void*) { return path; }
-
-bool readWholeFile(std::vector<unsigned char>* out, std::string*, const std::string& path, void*) {
-  const std::string bytes = readFile(path);
-  out->assign(bytes.begin(), bytes.end());
-  return true;
-}
-
 /// Keeps an image's encoded bytes. Those in a buffer view may lie outside the buffer: they are not touched here.
 bool keepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int, const unsigned char* bytes, int size,
                void*) {
@@ -65,9 +33,9 @@ bool keepImage(tinygltf::Image* image, int, std::string*, std::string*, int, int
 Model parse(const fs::path& path) {
   const std::string bytes = readFile(path), where = path.string();
   checkCompression(checkContainer(bytes, where), where);
-  Folder folder{where, path.has_parent_path() ? path.parent_path().string() : "."};
+  GltfFolder folder{where, path.has_parent_path() ? path.parent_path().string() : "."};
   tinygltf::TinyGLTF parser;
-  parser.SetFsCallbacks({fileExists, samePath, readWholeFile, nullptr, &folder});
+  parser.SetFsCallbacks({gltfFileExists, gltfFilePath, readGltfFile, nullptr, &folder});
   parser.SetImageLoader(keepImage, nullptr);
   Model model;
   std::string errors, ignored;
@@ -101,20 +69,6 @@ const Value& extension(const tinygltf::ExtensionMap& extensions, const char* nam
   static const Value none;
   const auto found = extensions.find(name);
   return found == extensions.end() ? none : found->second;
-}
-
-float inRange(double value, double low, double high, const std::string& where) {
-  if (!(value >= low && value <= high))
-    throw Error(where, "has a number out of range (" + std::to_string(value) + ")", kRepair);
-  return static_cast<float>(value);
-}
-
-template <int N>
-glm::vec<N, float> toVec(const std::vector<double>& numbers, double low, double high, const std::string& where) {
-  if (numbers.size() < N) throw Error(where, "has a vector of too few numbers", kRepair);
-  glm::vec<N, float> v;
-  for (int i = 0; i < N; ++i) v[i] = inRange(numbers[i], low, high, where);
-  return v;
 }
 
 /// Reads the model item by item; buffers are only pointed at.
@@ -221,11 +175,6 @@ class Reader {
     Texture texture{image.width, image.height, std::move(image.image)};
     if (image.bits == 16) texture.texels = highBytes(texture.texels);
     return texture;
-  }
-
-  static Texture::Wrap wrapOf(int mode) {
-    if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return Texture::Wrap::clamp;
-    return mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT ? Texture::Wrap::mirror : Texture::Wrap::repeat;
   }
 
   /// The scene's texture, -1 for none. transform: of the material's first texture; the others must agree.

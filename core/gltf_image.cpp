@@ -41,4 +41,10 @@ std::vector<std::uint8_t> highBytes(const std::vector<unsigned char>& pairs) {
   return bytes;
 }
 
+Texture::Wrap wrapOf(int mode) {
+  constexpr int kClampToEdge = 33071, kMirroredRepeat = 33648;
+  if (mode == kClampToEdge) return Texture::Wrap::clamp;
+  return mode == kMirroredRepeat ? Texture::Wrap::mirror : Texture::Wrap::repeat;
+}
+
 }  // namespace core

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
-
-#include "core/check.h"
 
 namespace core {
 namespace {
@@ -38,6 +37,20 @@ std::string consequence(const std::string& extension) {
 }
 
 }  // namespace
+
+Error unreadable(const std::string& where, std::string complaint) {
+  while (!complaint.empty() && std::isspace(static_cast<unsigned char>(complaint.back()))) complaint.pop_back();
+  std::replace(complaint.begin(), complaint.end(), '\n', ' ');
+  if (complaint.empty()) complaint = "an item lacks what it must have";
+  return {where, "cannot be read as glTF (" + complaint.substr(0, 300) + ")", "repair the file or export it again"};
+}
+
+float inRange(double value, double low, double high, const std::string& where) {
+  if (!(value >= low && value <= high))
+    throw Error(where, "has a number out of range (" + std::to_string(value) + ")",
+                "repair the file or export it again");
+  return static_cast<float>(value);
+}
 
 void warnOnce(std::vector<std::string>& warnings, const std::string& warning) {
   if (!holds(warnings, warning)) warnings.push_back(warning);

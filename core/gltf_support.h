@@ -1,11 +1,29 @@
-// What of glTF this project does not read, and how its users are told.
+// How users are told what of a glTF file is not supported or wrong.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "core/check.h"
+#include "core/maths.h"
+
 namespace core {
+
+/// A parser's complaint as one line.
+Error unreadable(const std::string& where, std::string complaint);
+
+/// A number of the file as float. Throws Error naming `where` unless low <= value <= high.
+float inRange(double value, double low, double high, const std::string& where);
+
+/// The first N numbers as a vector. Throws Error naming `where` for fewer, or for one out of range.
+template <int N>
+glm::vec<N, float> toVec(const std::vector<double>& numbers, double low, double high, const std::string& where) {
+  if (numbers.size() < N) throw Error(where, "has a vector of too few numbers", "repair the file or export it again");
+  glm::vec<N, float> v;
+  for (int i = 0; i < N; ++i) v[i] = inRange(numbers[i], low, high, where);
+  return v;
+}
 
 /// Adds a warning unless it is there already: each kind is told once.
 void warnOnce(std::vector<std::string>& warnings, const std::string& warning);
