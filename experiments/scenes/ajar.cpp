@@ -59,7 +59,7 @@ void addWindow(SceneBuilder& scene) {
   const vec3 tints[] = {{1, 0.9f, 0.72f}, {1, 0.82f, 0.6f}, {0.85f, 0.9f, 1}};
   const int window = scene.node("window", {{1.6f, 1.3f, -4.8f}, vec3(1), turn(-30)});
   for (int row = 0; row < 3; ++row) {
-    const int pane = scene.mesh("pane", quadMesh(), scene.material(emitter("pane", 130.0f * tints[row])));
+    const int pane = scene.mesh("pane", quadMesh(), scene.material(emitter("pane", 325.0f * tints[row])));
     for (int column = 0; column < 2; ++column)
       scene.add("pane", pane, {{0.3f * (column - 0.5f), 0.44f * (row - 1), 0}, {0.27f, 0.4f, 1}, turn(0), window});
   }
@@ -67,7 +67,7 @@ void addWindow(SceneBuilder& scene) {
 
 /// So that what the slit does not light is not black: weak against the window.
 void addCeilingLamp(SceneBuilder& scene) {
-  const int lamp = scene.mesh("ceiling lamp", quadMesh(), scene.material(emitter("ceiling lamp", {8, 9, 11})));
+  const int lamp = scene.mesh("ceiling lamp", quadMesh(), scene.material(emitter("ceiling lamp", {20, 23, 28})));
   scene.add("ceiling lamp", lamp, {{0.3f, kHeight - 0.02f, 0}, {0.5f, 0.5f, 1}, turn(90, {1, 0, 0})});
 }
 
