@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
+#include "core/check.h"
 #include "core/glb.h"
 #include "experiments/commands.h"
 #include "experiments/scenes/builtin.h"
