@@ -89,16 +89,21 @@ float localWeight(const Histories<K>& h, const BlendParameters& p, int x, int y)
   }
 }
 
+/// x / s2 for x, s2 >= 0, at most 1e6: without noise any drift is certain. No 0 / 0, also where both have underflowed.
+float inUnitsOf(float s2, float x) {
+  constexpr float kMost = 1e6f;
+  if (!(x > 0)) return 0;
+  return x < kMost * s2 ? x / s2 : kMost;
+}
+
 /// Blends that look at the window around the pixel.
 template <int K>
 Weights<K> driftWeights(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
   const int a = p.pair[0], b = p.pair[1];
   const float mean = row.mean(i), s2 = row.meanSampleVariance(i);
   const float noise2 = p.noise == NoiseEstimate::safe ? row.safeNoise(i) : row.predictedNoise(i);
-  const float beyond = std::max(0.0f, mean * mean - noise2);
+  const float excess = inUnitsOf(s2, std::max(0.0f, mean * mean - noise2));
   const PairCovariance<float> c = pairOf(ledger, a, b);
-  // Without noise any drift is infinitely many times the noise; a relative floor keeps the arithmetic finite.
-  const float excess = beyond > 0 ? beyond / std::max(s2, 1e-6f * beyond) : 0.0f;
   if (p.mode == BlendMode::consistent) return pairWeights<K>(p, consistentWeight(c, excess));
   const float g = squaredDrift(excess, ledger.age(a), ledger.age(b));  // [blend G2]
   if (p.mode == BlendMode::lagAll) return lagWeights(ledger, g, p.lowest);
