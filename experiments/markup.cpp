@@ -56,14 +56,17 @@ std::vector<double> linearTicks(double low, double high, int count) {
   const double raw = (high - low) / count, power = std::pow(10, std::floor(std::log10(raw)));
   const double step = power * (raw > 5 * power ? 10 : raw > 2 * power ? 5 : raw > power ? 2 : 1);
   std::vector<double> ticks;
-  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i) ticks.push_back(i * step);
+  for (double i = std::ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; ++i)
+    ticks.push_back(i * step + 0.0);  // no negative zero
   return ticks;
 }
 
 std::vector<double> logarithmicTicks(double low, double high) {
   const double decades = std::log10(high / low);
   if (decades < 0.5) return linearTicks(low, high, 4);
-  const std::vector<double> factors = decades > 3 ? std::vector<double>{1} : std::vector<double>{1, 2, 5};
+  std::vector<double> factors{1, 2, 5};
+  if (decades > 3) factors = {1};
+  if (decades < 1.2) factors = {1, 1.5, 2, 3, 4, 5, 7};
   std::vector<double> ticks;
   for (double power = std::floor(std::log10(low)); power <= std::ceil(std::log10(high)); ++power)
     for (const double factor : factors) {

@@ -22,7 +22,7 @@ inline constexpr std::size_t kSeriesClasses = 16;
 
 /// Round numbers that span [low, high]: steps of 1, 2 or 5 times a power of ten, about `count` of them.
 std::vector<double> linearTicks(double low, double high, int count = 5);
-/// Round numbers for a logarithmic axis, low > 0: decades, with 2 and 5 between them where there is room.
+/// Round numbers for a logarithmic axis, low > 0: decades, with more between them where there is room.
 std::vector<double> logarithmicTicks(double low, double high);
 
 }  // namespace experiments

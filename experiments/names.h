@@ -17,6 +17,7 @@ class Names {
   }
   /// Number of a name that has been added.
   std::size_t operator[](const std::string& name) const { return index_.at(name); }
+  bool has(const std::string& name) const { return index_.count(name) > 0; }
   const std::vector<std::string>& inOrder() const { return order_; }
 
  private:

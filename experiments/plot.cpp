@@ -161,10 +161,10 @@ std::string svgStackedBars(const StackedBars& plot) {
 }
 
 std::string svgColourScale(double low, double high, const std::string& label) {
-  constexpr double kFrom = 20, kTo = 420, kBar = 14;
+  constexpr double kFrom = 30, kTo = 430, kBar = 14;
   constexpr int kSteps = 100;
   const Axis x(low, high, kFrom, kTo, true);
-  std::string svg = open(440, 54, label);
+  std::string svg = open(460, 54, label);
   for (int i = 0; i < kSteps; ++i) {
     const core::vec3 c = 255.0f * mapColour((i + 0.5) / kSteps);
     svg += fmt::format(

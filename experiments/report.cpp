@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "core/files.h"
 #include "experiments/compare.h"
 #include "experiments/markup.h"
@@ -51,8 +49,8 @@ std::string definition(std::string_view term, std::string_view meaning) {
 }
 
 std::string definitions(const Results& results) {
-  Names metrics, regions;
-  for (const Row& r : results.rows) metrics.add(r.metric), regions.add(r.region);
+  Names regions;
+  for (const Row& r : results.rows) regions.add(r.region);
   std::string html =
       "<p>y is the image, r the reference. Each figure is the mean over the compared frames of a seed's "
       "sequence, then over seeds; brackets hold the 95 % confidence interval over seeds (Student's t). "
@@ -61,13 +59,11 @@ std::string definitions(const Results& results) {
       "</b>: geometric mean over seeds of ratios seed by seed, with its own interval. The best variant "
       "of a column is highlighted; <b>" +
       std::string(kLimitVariant) + "</b>, which sees the reference, is a limit and never counts as best.</p>\n<dl>\n";
-  for (const std::string& metric : metrics.inOrder())
+  for (const std::string& metric : metricsOf(results))
     if (!metricMeaning(metric).empty()) html += definition(metric, metricMeaning(metric));
   for (const Region region : kRegions) {
     const std::string name(regionName(region));
-    const auto& used = regions.inOrder();
-    if (std::find(used.begin(), used.end(), name) != used.end())
-      html += definition("region " + name, regionMeaning(region));
+    if (regions.has(name)) html += definition("region " + name, regionMeaning(region));
   }
   return html + "</dl>\n";
 }

@@ -76,21 +76,22 @@ std::string passTable(const PassMatrix& m) {
 }  // namespace
 
 std::string htmlFramePlots(const Results& results, const std::string& scene) {
-  Names metrics, variants;
+  Names variants;
   std::map<std::string, Curves> byMetric;
   for (const FrameValue& f : results.series) {
     if (f.scene != scene) continue;
-    metrics.add(f.metric), variants.add(f.variant);
+    variants.add(f.variant);
     Curves& curves = byMetric[f.metric];
     curves.regions.add(f.region);
     if (std::isfinite(f.value)) curves.means[{f.region, f.variant}][f.frame].add(f.value);
   }
-  std::string html = metrics.inOrder().empty() ? "" : htmlLegend(variants.inOrder());
-  for (const std::string& metric : metrics.inOrder())
-    html += fmt::format("<details{}><summary><b>{}</b></summary>\n{}</details>\n",
-                        metric == metrics.inOrder().front() ? " open" : "", escaped(metric),
-                        plotsOf(byMetric[metric], metric, variants));
-  return html;
+  std::string html;
+  for (const std::string& metric : metricsOf(results)) {
+    if (byMetric.count(metric) == 0) continue;
+    html += fmt::format("<details{}><summary><b>{}</b></summary>\n{}</details>\n", html.empty() ? " open" : "",
+                        escaped(metric), plotsOf(byMetric[metric], metric, variants));
+  }
+  return html.empty() ? "" : htmlLegend(variants.inOrder()) + html;
 }
 
 std::string htmlPassTimes(const Results& results, const std::string& scene) {

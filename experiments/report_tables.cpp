@@ -19,7 +19,7 @@ namespace {
 /// How far a figure is from perfect, for finding the best: less is better.
 double badness(const std::string& metric, double value) {
   if (metric == "SSIM") return -value;
-  if (metric == "energy_ratio") return std::abs(std::log(value));
+  if (metric == "energy_ratio" || metric == "energy_over_raw") return std::abs(std::log(value));
   return std::abs(value);
 }
 
@@ -85,8 +85,10 @@ class Table {
   std::map<std::pair<std::string, std::string>, Cell> cells_;
 };
 
+/// One line for every value; members of lists that are aggregates get lines of their own too.
 std::string settingLines(const Json& json, const std::string& path) {
-  if (!json.is_object() || json.empty())
+  const bool opens = json.is_object() || (json.is_array() && !json.empty() && json[0].is_object());
+  if (!opens || json.empty())
     return "<tr><td>" + escaped(path) + "</td><td>" + escaped(compactText(json)) + "</td></tr>\n";
   std::string text;
   for (const auto& [key, value] : json.items()) text += settingLines(value, path.empty() ? key : path + "." + key);
@@ -95,16 +97,23 @@ std::string settingLines(const Json& json, const std::string& path) {
 
 }  // namespace
 
+std::vector<std::string> metricsOf(const Results& results) {
+  Names present, ordered;
+  for (const Row& r : results.rows) present.add(r.metric);
+  for (const FrameValue& f : results.series) present.add(f.metric);
+  for (const auto& [metric, value] : namedMetrics({}))
+    if (present.has(metric)) ordered.add(metric);
+  for (const std::string& metric : present.inOrder()) ordered.add(metric);
+  return ordered.inOrder();
+}
+
 std::string htmlMetricTables(const Results& results, const std::string& scene) {
-  Names metrics;
   std::map<std::string, std::vector<Row>> byMetric;
-  for (const Row& r : results.rows) {
-    if (r.scene != scene) continue;
-    metrics.add(r.metric);
-    byMetric[r.metric].push_back(r);
-  }
+  for (const Row& r : results.rows)
+    if (r.scene == scene) byMetric[r.metric].push_back(r);
   std::string html;
-  for (const std::string& metric : metrics.inOrder()) {
+  for (const std::string& metric : metricsOf(results)) {
+    if (byMetric.count(metric) == 0) continue;
     const bool first = html.empty();  // the leading metric is open, the others unfold
     html += fmt::format("<details{}><summary><b>{}</b> <span class=\"faint\">{}</span></summary>\n",
                         first ? " open" : "", escaped(metric), escaped(metricMeaning(metric)));

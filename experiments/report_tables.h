@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "experiments/results.h"
 
@@ -9,6 +10,9 @@ namespace experiments {
 
 /// The limit that reports show but never call best.
 inline constexpr const char* kLimitVariant = "oracle";
+
+/// Metrics of rows and series, those of namedMetrics() first.
+std::vector<std::string> metricsOf(const Results& results);
 
 /// All metrics of one scene, a table each: variants x regions, mean, interval, ratio to the baseline, best marked.
 std::string htmlMetricTables(const Results& results, const std::string& scene);

@@ -138,10 +138,12 @@ std::string summaryTable(const Results& results, const std::string& scene, const
   for (const std::string& r : regions.inOrder()) cells[0][regions[r] + 1] = r;
   std::map<std::pair<std::string, std::string>, core::Interval> ratios;
   for (const Ratio& r : ratiosTo(rows, results.baseline)) ratios[{r.variant, r.region}] = r.value;
+  const core::Interval kOne{1, 1, 1};  // the baseline against itself
   for (const Summary& s : summarise(rows)) {
     const auto ratio = ratios.find({s.variant, s.region});
-    cells[variants[s.variant] + 1][regions[s.region] + 1] =
-        tableCell(s, ratio == ratios.end() ? nullptr : &ratio->second);
+    cells[variants[s.variant] + 1][regions[s.region] + 1] = tableCell(s, s.variant == results.baseline ? &kOne
+                                                                         : ratio == ratios.end()       ? nullptr
+                                                                                                 : &ratio->second);
   }
   return alignedTable(cells);
 }
