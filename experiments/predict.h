@@ -38,8 +38,8 @@ class Prediction {
 /// The frame just advanced to, as `twofold predict` prints it; numbers that are not known are null.
 Json predictionJson(const Prediction& prediction, double n);
 
-/// Counts separated by commas, spaces or lines (nothing between two commas is an error): each 0 or within [1e-6, 1e9]. Throws core::UsageError that starts with
-/// `where`.
+/// Counts separated by commas, spaces or lines (nothing between two commas is an error): each 0 or within [1e-6, 1e9].
+/// Throws core::UsageError that starts with `where`.
 std::vector<double> parseCounts(const std::string& text, const std::string& where);
 
 }  // namespace experiments
