@@ -24,21 +24,25 @@ struct CandidateParameters {
 /// A BSDF ray meets at most this many emitters; more along one line are dropped (their energy is lost).
 inline constexpr int kMostEmittersOnARay = 64;
 
-/// Calls body(LightSample) for every emitter on the ray, through occluders, nearest first.
-template <class Body>
-void forEachEmitter(const core::Tracer& tracer, const Lights& lights, const vec3& origin, const vec3& direction,
-                    Body&& body) {
-  float minimum = 0;
-  for (int i = 0; i < kMostEmittersOnARay; ++i) {
-    const core::Hit hit = tracer.intersectLights(origin, direction, minimum);
-    if (!hit.hit()) return;
-    body(LightSample{lights.lightOf(hit.instance, hit.primitive), hit.barycentric});
-    minimum = hit.distance * (1 + 0x1p-20f);  // beyond the rounding with which Embree would find it again
+/// Finds every emitter on a ray, through occluders, nearest first. Emitters closer together than a millionth of their
+/// distance count as one.
+struct ThroughOccluders {
+  template <class Body>
+  void operator()(const core::Tracer& tracer, const Lights& lights, const vec3& origin, const vec3& direction,
+                  Body&& body) const {
+    float minimum = 0;
+    for (int i = 0; i < kMostEmittersOnARay; ++i) {
+      const core::Hit hit = tracer.intersectLights(origin, direction, minimum);
+      if (!hit.hit()) return;
+      body(LightSample{lights.lightOf(hit.instance, hit.primitive), hit.barycentric});
+      minimum = hit.distance * (1 + 0x1p-20f);  // beyond the rounding with which Embree would find it again
+    }
   }
-}
+};
 
-/// Streams batches into one builder, as part of `total` batches in all.
-template <LightFeatures F>
+/// Streams batches into one builder, as part of `total` batches in all. Walk: what a BSDF ray finds; anything but the
+/// default is there to show in tests what goes wrong.
+template <LightFeatures F, class Walk = ThroughOccluders>
 class Candidates {
  public:
   Candidates(const Target<F>& target, const Surface& surface, const core::Tracer& tracer,
@@ -56,8 +60,7 @@ class Candidates {
     if (lights.triangleCount() == 0) return;
     for (int i = 0; i < parameters_.bsdfSamples; ++i) {
       const core::BsdfSample s = target_.bsdf().sample(rng.uniform3());
-      if (s.pdf > 0)
-        forEachEmitter(tracer_, lights, origin_, s.direction, [&](const LightSample& y) { add(y, rng, builder); });
+      if (s.pdf > 0) Walk()(tracer_, lights, origin_, s.direction, [&](const LightSample& y) { add(y, rng, builder); });
     }
   }
 

@@ -14,6 +14,7 @@
 
 #include "core/image.h"
 #include "core/moment.h"
+#include "core/parallel.h"
 #include "restir/candidates.h"
 #include "restir/mis.h"
 #include "restir/past.h"

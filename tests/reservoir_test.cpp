@@ -1,0 +1,227 @@
+// Reservoirs choose in proportion to weights, merging equals streaming, and no number breaks them.
+#include "restir/reservoir.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+#include "core/statistics.h"
+#include "restir/mis.h"
+#include "tests/chi_square.h"
+#include "twohistory/history.h"
+
+namespace {
+
+using core::LightSample;
+using restir::Mis;
+using restir::Reservoir;
+using restir::ReservoirBuilder;
+
+constexpr double kSignificance = 1e-6;
+const double kLargestZ = core::sidakBound(1, kSignificance);
+
+core::Rng rngOf(std::uint32_t trial, std::uint64_t seed = 1) { return {seed, core::Pass::lab, trial, 0}; }
+
+/// A target over a few lights.
+struct Table {
+  std::vector<float> values;
+  float operator()(const LightSample& y) const { return values[y.light]; }
+};
+
+std::vector<float> weightsOf(int count, double decades, bool descending) {
+  std::vector<float> w(count);
+  for (int i = 0; i < count; ++i) {
+    const int at = descending ? count - 1 - i : i;
+    w[at] = static_cast<float>(std::pow(10.0, -decades * i / count));
+  }
+  return w;
+}
+
+Reservoir stream(const std::vector<float>& weights, core::Rng& rng) {
+  ReservoirBuilder builder;
+  for (std::uint32_t i = 0; i < weights.size(); ++i) builder.add({i, {}}, 1, weights[i], rng);
+  return builder.finish(1, 0);
+}
+
+/// p value of which candidate is kept; keep: draws one trial.
+template <class Keep>
+double chiSquareOf(const std::vector<float>& weights, int trials, Keep&& keep) {
+  std::vector<double> counts(weights.size()), expected(weights.size());
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (std::size_t i = 0; i < weights.size(); ++i) expected[i] = trials * weights[i] / sum;
+  for (int t = 0; t < trials; ++t) {
+    core::Rng rng = rngOf(t);
+    ++counts[keep(rng)];
+  }
+  return tests::chiSquareP(counts, expected);
+}
+
+TEST(Reservoir, KeepsInProportionToWeights) {
+  for (int count : {1, 2, 3, 16, 256, 4096})
+    for (double decades : {0.0, 6.0})
+      for (bool descending : {false, true}) {
+        const auto weights = weightsOf(count, decades, descending);
+        const int trials = std::clamp(4'000'000 / count, 2000, 1'000'000);
+        EXPECT_GT(chiSquareOf(weights, trials, [&](core::Rng& rng) { return stream(weights, rng).sample.light; }),
+                  kSignificance)
+            << count << " candidates over " << decades << " decades";
+      }
+}
+
+TEST(Reservoir, ChiSquareCatchesAReservoirThatFavoursItsLast) {
+  // A random number in (0, 0.97) instead of (0, 1) keeps later candidates 3 % too often.
+  const std::vector<float> weights{1, 1, 1};
+  const auto keep = [&](core::Rng& rng) {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < 3; ++i)
+      if (0.97f * rng.uniform() * (i + 1) < 1) kept = i;
+    return kept;
+  };
+  EXPECT_LT(chiSquareOf(weights, 1'000'000, keep), kSignificance);
+}
+
+TEST(Reservoir, MergingIsStreaming) {
+  // Ten fixed candidates of one target: streamed, or split and merged with weights 1/M, in two splits and two orders.
+  const Table target{{3, 1, 4, 1, 5, 9, 2, 6, 5, 3}};
+  const std::vector<float> density{.1f, .2f, .05f, .05f, .1f, .1f, .1f, .1f, .1f, .1f};
+  std::vector<float> weights(10);
+  for (int i = 0; i < 10; ++i) weights[i] = target.values[i] / density[i];
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const auto part = [&](const std::vector<std::uint32_t>& indices, core::Rng& rng) {
+    ReservoirBuilder builder;
+    for (std::uint32_t i : indices)
+      builder.add({i, {}}, target.values[i], weights[i] / static_cast<double>(indices.size()), rng);
+    return builder.finish(static_cast<float>(indices.size()), 0);
+  };
+  const std::vector<std::vector<std::vector<std::uint32_t>>> splits{
+      {{0, 1, 2, 3, 4}, {5, 6, 7, 8, 9}}, {{9}, {1, 2, 3}, {0, 4, 5, 6, 7, 8}}, {{5, 7, 9}, {0, 1, 2, 3, 4, 6, 8}}};
+  for (const auto& split : splits)
+    for (Mis mis : {Mis::constant, Mis::balance}) {
+      const auto keep = [&](core::Rng& rng) {
+        std::vector<restir::Source<Table>> sources;
+        for (const auto& indices : split) sources.push_back({part(indices, rng), target});
+        const Reservoir r = restir::mergeReservoirs<Table>(sources, mis, 0, rng);
+        EXPECT_EQ(r.confidence, 10);
+        EXPECT_NEAR(r.unbiasedWeight * target(r.sample), sum / 10, 1e-5 * sum);  // streaming's W, exactly
+        return r.sample.light;
+      };
+      EXPECT_GT(chiSquareOf(weights, 100'000, keep), kSignificance);
+    }
+}
+
+/// z of the mean of W g(y) against the sum of g over the target's support. spoil: factor on W as a function of how many
+/// of the M candidates had weight.
+template <class Spoil>
+double zOfExpectation(Spoil&& spoil) {
+  const Table target{{2, 0, 1, 5, 0, 0.01f, 3, 1}};
+  const std::vector<float> g{1, 100, 2, 3, 100, 4, 0.5f, 2};  // elsewhere than the target: no matter
+  constexpr int kCandidates = 4, kTrials = 400'000;
+  double exact = 0;
+  for (int i = 0; i < 8; ++i) exact += target.values[i] > 0 ? g[i] : 0;
+  core::RunningMoments moments;
+  for (int t = 0; t < kTrials; ++t) {
+    core::Rng rng = rngOf(t);
+    ReservoirBuilder builder;
+    int valid = 0;
+    for (int i = 0; i < kCandidates; ++i) {
+      const LightSample y{rng.below(8), {}};
+      valid += target(y) > 0;
+      builder.add(y, target(y), target(y) * 8.0 / kCandidates, rng);
+    }
+    const Reservoir r = builder.finish(kCandidates, 0);
+    moments.add(r.unbiasedWeight > 0 ? r.unbiasedWeight * g[r.sample.light] * spoil(valid, kCandidates) : 0.0);
+  }
+  return (moments.mean() - exact) / std::sqrt(moments.meanVariance());
+}
+
+TEST(Reservoir, WeightTimesFunctionIsItsSumOverTheSupport) {
+  EXPECT_LT(std::abs(zOfExpectation([](int, int) { return 1.0; })), kLargestZ);
+}
+
+TEST(Reservoir, ExpectationCatchesNullSamplesThatDoNotCount) {
+  EXPECT_GT(std::abs(zOfExpectation([](int valid, int all) { return double(all) / valid; })), kLargestZ);
+}
+
+TEST(Mis, BalanceSumsToOneOverWhoeverCanProduceASample) {
+  core::Rng rng = rngOf(0);
+  int failedByConstant = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::vector<restir::Source<Table>> sources(1 + rng.below(6));
+    for (auto& s : sources) {
+      s.reservoir.confidence = rng.uniform() < 0.2f ? 0.0f : std::pow(10.0f, 6 * rng.uniform() - 2);
+      s.target.values = {rng.uniform() < 0.4f ? 0.0f : std::pow(10.0f, 12 * rng.uniform() - 6)};
+    }
+    double balance = 0, constant = 0;
+    bool possible = false;
+    const LightSample y{0, {}};
+    for (std::size_t i = 0; i < sources.size(); ++i) {
+      if (!(sources[i].reservoir.confidence > 0 && sources[i].target(y) > 0)) continue;
+      possible = true;
+      const float canonical = sources[0].target(y);
+      balance += restir::misWeight<Table>(Mis::balance, sources, i, y, canonical);
+      constant += restir::misWeight<Table>(Mis::constant, sources, i, y, canonical);
+    }
+    if (!possible) continue;
+    EXPECT_NEAR(balance, 1, 1e-6);
+    failedByConstant += std::abs(constant - 1) > 1e-6;
+  }
+  EXPECT_GT(failedByConstant, 500);
+}
+
+TEST(Reservoir, NoNumberBreaksIt) {
+  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+  const std::vector<float> odd{0.0f, 1e-45f, 1e-38f, 1e-30f, 1, 1e30f, 3e38f, inf, -inf, nan, -1};
+  for (float target : odd)
+    for (float weight : odd)
+      for (float confidence : {0.0f, 1.0f, 1e30f}) {
+        core::Rng rng = rngOf(0);
+        ReservoirBuilder builder;
+        builder.add({0, {}}, target, weight, rng);
+        builder.add({1, {}}, 1, 1, rng);
+        const Reservoir r = builder.finish(confidence, 0);
+        EXPECT_TRUE(std::isfinite(r.unbiasedWeight) && r.unbiasedWeight >= 0) << target << " " << weight;
+        EXPECT_EQ(r.confidence, confidence);
+        // A stored weight or target that is out of order must not spread through a merge either.
+        const Reservoir stored{{0, {}}, weight, confidence, 0}, good{{1, {}}, 1, 1, 0};
+        for (Mis mis : {Mis::constant, Mis::balance}) {
+          const std::vector<restir::Source<Table>> sources{{good, {{target, 1}}}, {stored, {{target, 1}}}};
+          const Reservoir merged = restir::mergeReservoirs<Table>(sources, mis, 0, rng);
+          EXPECT_TRUE(std::isfinite(merged.unbiasedWeight) && merged.unbiasedWeight >= 0);
+          EXPECT_EQ(merged.confidence, 1 + confidence);
+        }
+      }
+}
+
+TEST(Reservoir, NullSamplesKeepTheirConfidence) {
+  const Reservoir null{{}, 0, 5, 0}, good{{0, {}}, 2, 3, 0};
+  core::Rng rng = rngOf(0);
+  const std::vector<restir::Source<Table>> sources{{null, {{1}}}, {good, {{1}}}};
+  const Reservoir merged = restir::mergeReservoirs<Table>(sources, Mis::balance, 7, rng);
+  EXPECT_EQ(merged.confidence, 8);
+  EXPECT_EQ(merged.frame, 7u);
+  EXPECT_FLOAT_EQ(merged.unbiasedWeight, 2 * 3.0f / 8);  // it found nothing five times out of eight
+}
+
+TEST(Reservoir, CountsNeitherStallNorWrapOverTenThousandFramesOf4096) {
+  // No forgetting: the weight grows until the ledger's limit, and a fresh count of 4096 still matters there.
+  twohistory::Ledger<1> ledger;
+  const twohistory::Policies<1> keepAll{
+      twohistory::Policy{twohistory::Weighting::samples, twohistory::Forgetting::none, 0}};
+  Reservoir history{{}, 0, 0, 0};
+  core::Rng rng = rngOf(0);
+  for (int f = 0; f < 10'000; ++f) {
+    const auto change = twohistory::advanceOf(ledger, keepAll, 4096.0f);
+    history.confidence = change.factor[0] * ledger.weight[0];
+    const Reservoir fresh{{std::uint32_t(f & 1), {}}, 1, change.fresh[0], 0};
+    const std::vector<restir::Source<Table>> sources{{fresh, {{1, 1}}}, {history, {{1, 1}}}};
+    history = restir::mergeReservoirs<Table>(sources, Mis::balance, f, rng);
+    ledger = twohistory::advance(ledger, change, 4096.0f);
+    ASSERT_NEAR(history.unbiasedWeight, 1, 1e-4) << f;
+    ASSERT_EQ(history.confidence, ledger.weight[0]);
+  }
+  EXPECT_GE(history.confidence, twohistory::kHeaviest<float>);
+  EXPECT_LT(history.confidence, 2 * twohistory::kHeaviest<float>);
+}
+
+}  // namespace
