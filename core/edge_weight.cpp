@@ -1,7 +1,5 @@
 #include "core/edge_weight.h"
 
-#include "core/simd.h"
-
 namespace core {
 namespace {
 
@@ -55,12 +53,6 @@ void edgeTerms(const Guide& guide, const EdgeParameters& parameters, int y, int 
   }
   edgeKernel(rowsOf(guide, y, dx, dy, x0), parameters.depthScale, parameters.relativeDepth, distance, x1 - x0, exponent,
              factor);
-}
-
-float edgeWeight(const Guide& guide, const EdgeParameters& parameters, ivec2 p, ivec2 q) {
-  float exponent, factor;
-  edgeTerms(guide, parameters, p.y, q.x - p.x, q.y - p.y, p.x, p.x + 1, &exponent, &factor);
-  return factor * expNegative(-exponent);
 }
 
 }  // namespace core
