@@ -110,7 +110,9 @@ TEST(Restir, CountsFromTheLastEstimateAreBiased) {
   RestirParameters p = wide(Reuse::temporal);
   p.candidates = {1, 0};
   const auto scheduled = [](int f, int x, int y, const vec3&) { return (f + x + y) % 2 ? 1.0f : 8.0f; };
-  const auto driven = [](int, int, int, const vec3& before) { return core::luminance(before) > 0.5f ? 1.0f : 32.0f; };
+  const auto driven = [](int f, int, int, const vec3& before) {
+    return f == 0 || core::luminance(before) > 0.5f ? 1.0f : 16.0f;
+  };
   expectUnbiased(world, p, 1024, {scheduled, {}});
   expectBiased(world, p, 1024, {driven, {}});
 }
