@@ -163,11 +163,9 @@ void Lights::drawBy(const std::vector<float>& power) {
       [&](std::size_t i) { triangles_[i].probability = table_.probability(static_cast<std::uint32_t>(i)); }, kGrain);
 }
 
-LightSample Lights::sample(Rng& rng) const {
+LightSample Lights::sampleAt(std::uint32_t binBits, std::uint32_t keepBits, vec2 uv) const {
   if (table_.empty()) return {};
-  const std::uint32_t binBits = rng.bits(), keepBits = rng.bits();
-  const std::uint32_t light = table_.sample(binBits, keepBits);
-  return {light, toBarycentric(rng.uniform2())};
+  return {table_.sample(binBits, keepBits), toBarycentric(uv)};
 }
 
 Incident Lights::fromPunctual(const PunctualState& light, const vec3& position) const {

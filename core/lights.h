@@ -93,7 +93,12 @@ class Lights {
   LightFeatures features() const { return features_; }
 
   /// Draws a light by power and a uniform point on it; invalid only if empty().
-  LightSample sample(Rng& rng) const;
+  LightSample sample(Rng& rng) const {
+    const std::uint32_t binBits = rng.bits(), keepBits = rng.bits();
+    return sampleAt(binBits, keepBits, rng.uniform2());
+  }
+  /// The same from numbers that the caller made: 32 uniform bits each for the light, and where on it.
+  LightSample sampleAt(std::uint32_t binBits, std::uint32_t keepBits, vec2 uv) const;
   /// Density with which sample() gives points of this light, in the measure of this file: its probability.
   float pdf(std::uint32_t light) const {
     return isArea(light) ? triangles_[light].probability : table_.empty() ? 0.0f : table_.probability(light);

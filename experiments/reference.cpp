@@ -13,7 +13,7 @@ namespace {
 
 using core::vec3;
 
-constexpr int kReferenceVersion = 1;  ///< part of the cache's key; raised when the estimator's results change
+constexpr int kReferenceVersion = 2;  ///< part of the cache's key; raised when the estimator's results change
 constexpr std::uint64_t kFirstStream = 0x52656631, kSecondStream = 0x52656632;
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "restir/direct.h"
 
+#include "core/lattice.h"
 #include "core/material.h"
 #include "restir/visibility.h"
 
@@ -7,6 +8,7 @@ namespace restir {
 namespace {
 
 using core::Incident;
+using core::Lattice3;
 using core::LightFeatures;
 using core::Lights;
 using core::LightSample;
@@ -33,16 +35,16 @@ vec3 weighted(const Receiver& r, const LightSample& y, const Incident& in) {
 }
 
 template <LightFeatures F>
-vec3 lightSample(const Receiver& r, Rng& rng) {
-  const LightSample y = r.lights.sample(rng);
+vec3 lightSample(const Receiver& r, const std::array<std::uint32_t, 3>& u, std::uint32_t keepBits) {
+  const LightSample y = r.lights.sampleAt(u[0], keepBits, {Lattice3::uniform(u[1]), Lattice3::uniform(u[2])});
   const Incident in = r.lights.template incident<F>(y, r.surface.position);
   const vec3 value = weighted<F>(r, y, in);
   return core::maxComponent(value) > 0 && visible(r.tracer, r.surface, in) ? value : vec3(0);
 }
 
 template <LightFeatures F>
-vec3 bsdfSample(const Receiver& r, Rng& rng) {
-  const core::BsdfSample s = r.bsdf.sample(rng.uniform3());
+vec3 bsdfSample(const Receiver& r, const std::array<std::uint32_t, 3>& u) {
+  const core::BsdfSample s = r.bsdf.sample({Lattice3::uniform(u[0]), Lattice3::uniform(u[1]), Lattice3::uniform(u[2])});
   if (!(s.pdf > 0)) return vec3(0);
   const core::Hit hit = r.tracer.intersect(r.origin, s.direction);
   const std::uint32_t light = hit.hit() ? r.lights.lightOf(hit.instance, hit.primitive) : core::kNoLight;
@@ -53,11 +55,12 @@ vec3 bsdfSample(const Receiver& r, Rng& rng) {
 
 template <LightFeatures F>
 vec3 mean(const Receiver& r, int samples, std::uint64_t stream, std::uint32_t pixel, std::uint32_t frame) {
+  Rng rng(stream, core::Pass::reference, pixel, frame);
+  const Lattice3 lightPoints(rng), bsdfPoints(rng);
   vec3 sum(0);
   for (int i = 0; i < samples; ++i) {
-    Rng rng(stream, core::Pass::reference, pixel, frame, static_cast<std::uint32_t>(i));
-    sum += lightSample<F>(r, rng);
-    if (r.lights.triangleCount() > 0) sum += bsdfSample<F>(r, rng);
+    sum += lightSample<F>(r, lightPoints.bits(static_cast<std::uint32_t>(i)), rng.bits());
+    if (r.lights.triangleCount() > 0) sum += bsdfSample<F>(r, bsdfPoints.bits(static_cast<std::uint32_t>(i)));
   }
   return sum / static_cast<float>(samples);
 }

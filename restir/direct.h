@@ -8,8 +8,9 @@
 
 namespace restir {
 
-/// Mean of `samples` >= 1 independent samples of the light that a surface reflects to the camera (not demodulated,
-/// emission excluded). stream: different streams are independent; pixel: row-major index.
+/// Mean of `samples` >= 1 samples, spread evenly (core/lattice.h), each unbiased by itself, of the light that a surface
+/// reflects to the camera (not demodulated, emission excluded). stream: different streams are independent; pixel:
+/// row-major index.
 core::vec3 meanDirect(const core::Moment& moment, const core::Surface& surface, int samples, std::uint64_t stream,
                       std::uint32_t pixel);
 
