@@ -38,7 +38,7 @@ TEST(Lattice, MeansAreUnbiasedAndMuchBetterThanWithRandomPoints) {
   double mean = 0, lattice2 = 0, random2 = 0;
   constexpr int kShifts = 2000;
   for (std::uint32_t seed = 0; seed < kShifts; ++seed) {
-    const double e = errorOf(seed, 64, true), r = errorOf(seed, 64, false);
+    const double e = errorOf(seed, 256, true), r = errorOf(seed, 256, false);
     mean += e / kShifts, lattice2 += e * e / kShifts, random2 += r * r / kShifts;
   }
   EXPECT_NEAR(mean, 0, 5.3 * std::sqrt(lattice2 / kShifts));
