@@ -49,11 +49,16 @@ class Runner {
   }
 
  private:
-  /// A reference frame's share of the work, in frames: a rough guess that keeps the time left honest.
+  /// Work of one reference frame in units of a frame of a sequence: a rough guess that keeps the time left honest.
+  std::int64_t stepsOfReference() const {
+    constexpr int kSamplesPerVariant = 4;  // both halves' samples a pixel that cost as much as filtering one variant
+    return std::max<std::int64_t>(1,
+                                  2 * config_.reference.samples / (kSamplesPerVariant * (std::ssize(variants_) + 4)));
+  }
   std::int64_t referenceSteps() const {
     std::int64_t frames = 0;
     for (int frame = 0; frame < config_.frames; ++frame) frames += hasReference(config_, frame);
-    return frames;
+    return frames * stepsOfReference();
   }
 
   void runScene(const std::string& source) {
@@ -76,7 +81,7 @@ class Runner {
       const ReferenceFrame& reference = references.at(frame);
       if (std::find(shown.begin(), shown.end(), frame) != shown.end())
         gallery_.addReference(label, frame, reference.mean());
-      progress_->advance(1, label + ", reference of frame " + std::to_string(frame));
+      progress_->advance(stepsOfReference(), label + ", reference of frame " + std::to_string(frame));
     }
   }
 

@@ -54,23 +54,28 @@ class Sequence {
     const Shaded shaded = shade(stage_, config_.shade, static_cast<std::uint32_t>(frame), shading_);
     memory_.advance(shaded.guide, shading_.fovea());
     const ReferenceFrame* reference = hasReference(config_, frame) ? &references_.at(frame) : nullptr;
-    if (reference) demodulate(reference->mean(), shaded, target_);
+    std::optional<Reference> truth;
+    if (reference) {
+      truth.emplace(reference->view());
+      demodulate(reference->mean(), shaded, target_);
+    }
+    const Reference* compared = truth ? &*truth : nullptr;
 
     remodulate(shaded.radiance, shaded, image_);
-    measure(frame, kRaw, 0, reference);
+    measure(frame, kRaw, 0, compared);
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       const PlanesView<const float> target = reference ? target_.view() : PlanesView<float>{};
       filter(shaded, variants_[v], target, *filters_[v], image_);
-      measure(frame, variants_[v].name, v + 1, reference);
+      measure(frame, variants_[v].name, v + 1, compared);
     }
   }
 
   /// Books the errors of image_ and hands it on.
-  void measure(int frame, const std::string& variant, std::size_t slot, const ReferenceFrame* reference) {
+  void measure(int frame, const std::string& variant, std::size_t slot, const Reference* reference) {
     energy_[slot] += luminanceSum(image_);
     std::optional<Comparison> comparison;
     if (reference) {
-      comparison.emplace(image_, reference->view(), scene_ + ", " + variant + ", frame " + std::to_string(frame));
+      comparison.emplace(image_, *reference, scene_ + ", " + variant + ", frame " + std::to_string(frame));
       for (const Region region : kRegions) addMetrics(frame, variant, region, *comparison);
     }
     const auto& wanted = config_.output.frames;
