@@ -25,16 +25,20 @@ struct CandidateParameters {
 inline constexpr int kMostEmittersOnARay = 64;
 
 /// Finds every emitter on a ray, through occluders, nearest first. Emitters closer together than a millionth of their
-/// distance count as one.
+/// distance count as one. Embree's rounding grows with coordinates, not with distance, so the triangle just met is also
+/// known by its number: a flat triangle lies on a ray once.
 struct ThroughOccluders {
   template <class Body>
   void operator()(const core::Tracer& tracer, const Lights& lights, const vec3& origin, const vec3& direction,
                   Body&& body) const {
     float minimum = 0;
+    core::Hit last;
     for (int i = 0; i < kMostEmittersOnARay; ++i) {
       const core::Hit hit = tracer.intersectLights(origin, direction, minimum);
       if (!hit.hit()) return;
-      body(LightSample{lights.lightOf(hit.instance, hit.primitive), hit.barycentric});
+      if (hit.instance != last.instance || hit.primitive != last.primitive)
+        body(LightSample{lights.lightOf(hit.instance, hit.primitive), hit.barycentric});
+      last = hit;
       minimum = hit.distance * (1 + 0x1p-20f);  // beyond the rounding with which Embree would find it again
     }
   }

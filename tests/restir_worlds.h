@@ -165,16 +165,17 @@ struct Estimate {
   }
 };
 
-/// Sequences of seeds 1..count. Batches of seeds run in parallel and are added in order.
-inline Estimate estimate(const World& world, const restir::RestirParameters& p, int count, const Hooks& hooks = {}) {
+/// Sequences of seeds firstSeed, ...; batches of them run in parallel and are added in order.
+inline Estimate estimate(const World& world, const restir::RestirParameters& p, int count, const Hooks& hooks = {},
+                         std::uint64_t firstSeed = 1) {
   constexpr int kBatch = 16;
   Estimate result;
   std::vector<core::Planes> images(kBatch);
-  for (int first = 1; first <= count; first += kBatch) {
-    const int size = std::min(kBatch, count + 1 - first);
+  for (int first = 0; first < count; first += kBatch) {
+    const int size = std::min(kBatch, count - first);
     tbb::parallel_for(0, size, [&](int i) {
       images[i] = core::Planes(kWidth, kHeight);
-      renderSequence(world, p, hooks, static_cast<std::uint64_t>(first + i), images[i]);
+      renderSequence(world, p, hooks, firstSeed + static_cast<std::uint64_t>(first + i), images[i]);
     });
     for (int i = 0; i < size; ++i) result.add(images[i]);
   }

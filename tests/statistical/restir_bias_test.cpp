@@ -88,7 +88,7 @@ TEST(RestirBias, MovingCamera) {
 
 TEST(RestirBias, EnergyDoesNotDriftOverAThousandFrames) {
   // Light of frames 800..1000 over that of frames 20..220, a ratio a sequence.
-  constexpr int kLong = 1000, kWindow = 200, kStart = 20, kCount = 24;
+  constexpr int kLong = 1000, kWindow = 200, kStart = 20, kCount = 112;
   const World world(tests::makeWorld(), kLong);
   std::vector<double> ratios(kCount);
   tbb::parallel_for(0, kCount, [&](int i) {
