@@ -1,3 +1,4 @@
+// Vose's pairing of light bins with heavy ones, in whole numbers out of 2^32.
 #include "core/alias_table.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Listing lights at an instant, weighing them by power, drawing them.
 #include "core/lights.h"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Making a Bsdf and sampling it; its hot half is in the header.
 #include "core/material.h"
 
 namespace core {

@@ -1,3 +1,4 @@
+// A pyramid of texture averages, and the cells that a triangle touches.
 #include "core/texture_mean.h"
 
 #include "core/texture.h"

@@ -1,3 +1,4 @@
+// One light sample and one BSDF sample at a time, combined.
 #include "restir/direct.h"
 
 #include "core/lattice.h"

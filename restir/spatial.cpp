@@ -1,3 +1,4 @@
+// Drawing neighbours from a disk.
 #include "restir/spatial.h"
 
 namespace restir {
