@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/check.h"
+#include "experiments/scene_source.h"
 
 namespace experiments {
 namespace {
@@ -14,7 +15,9 @@ Variant variantFrom(const Json& entry, const svgf::FilterParameters& filter, con
     v.filter = filter;
     return v;
   }
-  if (!entry.is_object()) throw core::UsageError(path, "it is neither a name nor an object", "see docs/extending.md");
+  if (!entry.is_object())
+    throw core::UsageError(path, "it is neither a name nor an object",
+                           "give a name, or {\"like\": NAME, \"name\": NEW, ...}");
   Json changes = entry;
   Variant v;
   if (const auto like = changes.find("like"); like != changes.end()) {
@@ -27,6 +30,32 @@ Variant variantFrom(const Json& entry, const svgf::FilterParameters& filter, con
   return v;
 }
 
+void requireBaseline(const Config& config) {
+  for (const Variant& v : variantsOf(config))
+    if (v.name == config.baseline) return;
+  if (config.baseline == "raw") return;
+  throw core::UsageError("config.baseline", "'" + config.baseline + "' is not among the variants",
+                         "name one of them, or raw");
+}
+
+void requireDistinct(const Config& config) {
+  if (std::set(config.seeds.begin(), config.seeds.end()).size() != config.seeds.size())
+    throw core::UsageError("config.seeds", "a seed comes twice", "independent sequences need seeds of their own");
+  std::set<std::string> labels;
+  for (const std::string& scene : config.scenes)
+    if (!labels.insert(sceneLabel(scene)).second)
+      throw core::UsageError("config.scenes", "two scenes are called '" + sceneLabel(scene) + "'",
+                             "tables and images go by file name: rename one");
+}
+
+void requireFiles(const Config& config) {
+  if (config.shade.gaze.kind == core::GazeKind::file && config.shade.gaze.file.empty())
+    throw core::UsageError("config.gaze.file", "no recording is named", "name a CSV file, or choose another gaze.kind");
+  if (config.shade.foveation.kind == core::FoveationKind::map && config.shade.foveation.file.empty())
+    throw core::UsageError("config.foveation.file", "no map is named",
+                           "name an OpenEXR file, or choose another foveation.kind");
+}
+
 }  // namespace
 
 Config configFrom(Json json, const std::vector<std::string>& assignments, const Config& defaults) {
@@ -37,7 +66,9 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
   config.shade.features = config.render.features;
   config.shade.restir.features =
       config.render.features == Features::all ? restir::Features::all : restir::Features::automatic;
-  variantsOf(config);
+  requireBaseline(config);
+  requireDistinct(config);
+  requireFiles(config);
   if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
   if (config.scenes.empty()) throw core::UsageError("config.scenes", "there is none", "give at least one");
   for (int frame : config.output.frames)

@@ -86,9 +86,13 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
   timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });
 
   s.started_ = true;
-  return {
-      s.radiance_, s.albedo_, now.gbuffer.emission, s.samples_, now.gbuffer.guide.view(), before.gbuffer.guide.view(),
-      s.taps_};
+  return {s.radiance_,
+          s.albedo_,
+          now.gbuffer.emission,
+          s.restir_.shaded,
+          now.gbuffer.guide.view(),
+          before.gbuffer.guide.view(),
+          s.taps_};
 }
 
 namespace {

@@ -29,7 +29,7 @@ struct ShadeParameters {
 struct Shaded {
   core::PlanesView<const float> radiance;  ///< demodulated: without emission, divided by albedo
   core::PlanesView<const float> albedo, emission;
-  core::In<float> samples;  ///< n, 0 = nothing new in this pixel
+  core::In<float> samples;  ///< n that the radiance stands for, 0 = nothing new in this pixel
   core::Guide guide, guideBefore;
   core::In<twohistory::Taps> taps;  ///< where each pixel was in the frame before; none in the first frame
 };

@@ -36,7 +36,7 @@ Progress::Progress(std::string title, std::int64_t total, std::FILE* out)
 
 Progress::~Progress() {
   const std::scoped_lock lock(mutex_);
-  report("", true);
+  if (done_ == total_) report("", true);  // a run that failed says why elsewhere, in one line
 }
 
 void Progress::advance(std::int64_t steps, const std::string& note) {

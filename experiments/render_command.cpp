@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <memory>
 #include <optional>
 
@@ -25,7 +26,9 @@ using core::PlanesView;
 struct RenderArguments {
   std::string scene, output, resolution;
   std::vector<std::string> assignments;
-  int frames = 1, threads = 0, reference = 0;
+  int frames = 1, threads = 0;
+  std::optional<int> reference;
+  std::string seedText = "1";
   std::uint64_t seed = 1;
   bool mean = false, raw = false;
 };
@@ -37,6 +40,23 @@ Config renderDefaults() {
   return config;
 }
 
+/// A whole number that is all of the text.
+template <class T>
+std::optional<T> numberFrom(std::string_view text) {
+  T value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size() || text.empty()) return {};
+  return value;
+}
+
+std::optional<std::pair<int, int>> sizeFrom(std::string_view text) {
+  const std::size_t x = text.find('x');
+  if (x == std::string_view::npos) return {};
+  const auto width = numberFrom<int>(text.substr(0, x)), height = numberFrom<int>(text.substr(x + 1));
+  if (!width || !height) return {};
+  return std::pair(*width, *height);
+}
+
 Config configOf(const RenderArguments& a) {
   const auto fail = [](const char* where, const std::string& what, const char* remedy) {
     throw core::UsageError(where, what, remedy);
@@ -44,16 +64,13 @@ Config configOf(const RenderArguments& a) {
   Json json = Json::object();
   json["frames"] = a.frames;
   if (!a.resolution.empty()) {
-    int width = 0, height = 0, end = 0;
-    if (std::sscanf(a.resolution.c_str(), "%dx%d%n", &width, &height, &end) != 2 ||
-        end != static_cast<int>(a.resolution.size()))
-      fail("--resolution", "'" + a.resolution + "' is no size", "give WIDTHxHEIGHT, such as 640x360");
-    json["width"] = width;
-    json["height"] = height;
+    const auto size = sizeFrom(a.resolution);
+    if (!size) fail("--resolution", "'" + a.resolution + "' is no size", "give WIDTHxHEIGHT, such as 640x360");
+    json["width"] = size->first;
+    json["height"] = size->second;
   }
-  if (a.reference < 0) fail("--reference", "a negative number of samples", "give at least 1");
-  if (a.reference > 0 && a.raw)
-    fail("--reference", "it cannot be combined with --raw", "a reference is never filtered");
+  if (a.reference && *a.reference < 1) fail("--reference", "fewer samples than one", "give at least 1");
+  if (a.reference && a.raw) fail("--reference", "it cannot be combined with --raw", "a reference is never filtered");
   return configFrom(json, a.assignments, renderDefaults());
 }
 
@@ -84,7 +101,7 @@ class FrameSource {
  public:
   FrameSource(const Stage& stage, const Config& config, const RenderArguments& a)
       : stage_(stage), config_(config), arguments_(a), variant_(variantsOf(config).front()) {
-    if (a.reference > 0) {
+    if (a.reference) {
       instant_.gbuffer = core::GBuffer(config.width, config.height);
       return;
     }
@@ -98,7 +115,7 @@ class FrameSource {
     if (!shading_) {
       stage_.pose(number, nullptr, instant_);
       stage_.trace(instant_.pose, config_.render.features, config_.render.tile, instant_);
-      renderReference(instant_, arguments_.reference, arguments_.seed * 0x10001 + number, config_.render.tile, out);
+      renderReference(instant_, *arguments_.reference, arguments_.seed * 0x10001 + number, config_.render.tile, out);
       return {};
     }
     const Shaded shaded = shade(stage_, config_.shade, number, *shading_);
@@ -170,13 +187,18 @@ void addRenderCommand(CLI::App& app) {
   command->add_option("--frames", a->frames, "at 30 a second")->capture_default_str();
   command->add_option("--resolution", a->resolution, "WIDTHxHEIGHT");
   command->add_option("--threads", a->threads, "0 = all");
-  command->add_option("--seed", a->seed, "of the random numbers")->capture_default_str();
+  command->add_option("--seed", a->seedText, "of the random numbers")->capture_default_str();
   command->add_option("--set", a->assignments, "path=value, changes one setting")->take_all();
   command->add_option("--reference", a->reference, "N samples a pixel by light sampling with MIS, without reuse");
   command->add_flag("--mean", a->mean, "write the mean over frames instead of every frame");
   command->add_flag("--raw", a->raw, "write the shaded radiance instead of the filtered image");
   command->footer([] { return "Settings and their defaults:\n" + listKeys(renderDefaults()); });
-  command->callback([=] { render(*a); });
+  command->callback([=] {
+    const auto seed = numberFrom<std::uint64_t>(a->seedText);
+    if (!seed) throw core::UsageError("--seed", "'" + a->seedText + "' is no seed", "give 0, 1, 2, ... below 2^64");
+    a->seed = *seed;
+    render(*a);
+  });
 }
 
 }  // namespace experiments

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <optional>
 
 #include "core/files.h"
@@ -34,7 +35,8 @@ class Runner {
   }
 
   Results run() {
-    fs::create_directories(folder_ / "parts");
+    loadFiles();
+    makeFolder(folder_ / "parts");
     const auto sequences = static_cast<std::int64_t>(config_.scenes.size() * config_.seeds.size());
     progress_.emplace("frames", sequences * config_.frames + referenceSteps() * std::ssize(config_.scenes));
     for (const std::string& scene : config_.scenes) runScene(scene);
@@ -61,8 +63,21 @@ class Runner {
     return frames * stepsOfReference();
   }
 
+  /// Files first, so that a broken one ends the run before anything is written.
+  void loadFiles() {
+    for (const std::string& source : config_.scenes)
+      if (!isBuiltin(source)) files_.emplace(source, loadScene(source));
+  }
+
+  static void makeFolder(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) throw core::Error(folder.string(), error.message(), "name a folder that can be written");
+  }
+
   void runScene(const std::string& source) {
-    const core::Scene scene = loadScene(source, folder_ / "scenes");
+    const auto file = files_.find(source);
+    const core::Scene scene = file != files_.end() ? std::move(file->second) : loadScene(source, folder_ / "scenes");
     const std::string label = sceneLabel(source), hash = contentHash(scene);
     for (const auto& warning : scene.warnings) notes_.push_back(label + ": " + warning);
     const Stage stage(scene);
@@ -157,6 +172,7 @@ class Runner {
   Results results_;
   std::vector<Figure> figures_;
   std::vector<std::string> notes_;
+  std::map<std::string, core::Scene> files_;  ///< scenes loaded from files, until they are run
   std::optional<Progress> progress_;
 };
 

@@ -27,6 +27,8 @@ void scene(const SceneArguments& arguments) {
     return;
   }
   if (arguments.output.empty()) throw core::UsageError("scene", "no output file is named", "add -o FILE.glb");
+  if (!arguments.output.ends_with(".glb"))
+    throw core::UsageError("scene", "'" + arguments.output + "' does not end in .glb", "name a .glb file");
   core::saveGlb(builtinScene(arguments.name), arguments.output);
 }
 

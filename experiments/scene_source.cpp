@@ -14,11 +14,6 @@
 namespace experiments {
 namespace {
 
-bool isBuiltin(const std::string& name) {
-  const auto names = builtinSceneNames();
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 /// FNV-1a, 64 bits, from a start of its own.
 std::uint64_t fnv(const std::string& bytes, std::uint64_t hash) {
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
@@ -36,6 +31,11 @@ core::Scene loadBuiltin(const std::string& name, std::filesystem::path folder) {
 
 }  // namespace
 
+bool isBuiltin(const std::string& name) {
+  const auto names = builtinSceneNames();
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
 core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path& folder) {
   const bool builtin = isBuiltin(nameOrFile);
   if (!builtin && !std::filesystem::path(nameOrFile).has_extension()) {
@@ -45,6 +45,11 @@ core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path
                       "give a .gltf or .glb file, or one of " + known);
   }
   core::Scene scene = builtin ? loadBuiltin(nameOrFile, folder) : core::loadGltf(nameOrFile);
+  const bool lit = !scene.punctual.empty() ||
+                   std::any_of(scene.instances.begin(), scene.instances.end(), [&](const core::Instance& i) {
+                     return scene.materials[scene.meshes[i.mesh].material].emits();
+                   });
+  if (!lit) scene.warnings.push_back("it has no light: its frames are black");
   for (const auto& warning : scene.warnings) fmt::print(stderr, "twofold: {}: {}\n", nameOrFile, warning);
   return scene;
 }

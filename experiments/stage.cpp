@@ -13,7 +13,8 @@ void Stage::pose(std::uint32_t frame, const Instant* before, Instant& out) const
   out.pose = core::poseAt(scene_, frame / kFramesPerSecond);
   const bool sameLights = before && before->lights && !motion_.lights;
   const bool sameTracer = before && before->tracer && !motion_.instances;
-  out.lights = sameLights ? before->lights : std::make_shared<core::Lights>(scene_, out.pose);
+  out.lights = sameLights ? before->lights
+                          : std::make_shared<core::Lights>(scene_, out.pose, before ? before->lights.get() : nullptr);
   out.tracer = sameTracer ? before->tracer : std::make_shared<core::Tracer>(trees_, scene_, out.pose);
 }
 

@@ -1,6 +1,7 @@
 #include "experiments/variant.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/check.h"
 
@@ -77,7 +78,11 @@ void requireConsistent(const Variant& v) {
   const auto fail = [&](const std::string& what, const std::string& remedy) {
     throw core::UsageError("variant '" + v.name + "'", what, remedy);
   };
-  if (v.name.empty()) fail("it has no name", "give each variant a name of its own");
+  const bool plain = std::all_of(v.name.begin(), v.name.end(), [](unsigned char c) {
+    return std::isalnum(c) || c == '-' || c == '_' || c == '.' || c == '+';
+  });
+  if (v.name.empty() || !plain || v.name.front() == '.')
+    fail("its name cannot name files", "use letters, digits, - _ + . and do not begin with a dot");
   if (v.histories.empty() || v.histories.size() > 3)
     fail(std::to_string(v.histories.size()) + " histories", "give one, two or three");
   for (const Policy& p : v.histories)

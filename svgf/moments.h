@@ -27,9 +27,10 @@ struct MomentsMerge {
       if (!(b > 0)) continue;
       const Moments& tap = before.at(step.taps.pixel[k]);
       sum.mean += b * tap.mean;
-      sum.sampleVariance += b * tap.sampleVariance;
+      sum.sampleVariance += b * tap.innovations * tap.sampleVariance;  // as a sum: what has seen none says nothing
       sum.innovations += b * tap.innovations;
     }
+    sum.sampleVariance = sum.innovations > 0 ? sum.sampleVariance / sum.innovations : 0;
     return sum;
   }
 

@@ -38,7 +38,7 @@ void describe(V& v, FilterParameters& p) {
   v("phiColour", p.phiColour, "luminance edge weight, in standard deviations", 1e-3, 1e6);
   v("depthScale", p.edges.depthScale, "depth edge weight, in depth slopes", 1e-6, 1e6);
   v("relativeDepth", p.edges.relativeDepth, "depth edge weight, in depths a pixel, added", 0.0, 1.0);
-  v("momentsDecay", p.momentsDecay, "decay a frame of the luminance mean that variance is measured against", 0.0, 1.0);
+  v("momentsDecay", p.momentsDecay, "decay a frame of the luminance mean that variance is measured against", 0.1, 1.0);
   v("spatialBelow", p.spatialBelow, "innovations below which variance comes from the neighbourhood", 1.0, 20.0);
   v("spatialRadius", p.spatialRadius, "radius of that neighbourhood in pixels", 1.0, 8.0);
 }

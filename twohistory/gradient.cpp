@@ -47,7 +47,8 @@ void updateGradient(const GradientParameters& p, const core::Guide& guide, In<Ta
     vec3 g(0);
     if (t.valid()) {
       g = gatherMean(gradient, t);
-      if (n(x, y) > 0) {
+      if (n(x, y) > 0 &&
+          gather<K, float>(t, ledgerBefore).weight[history] > 0) {  // else there is nothing to differ from
         const vec3 past = p.source == GradientSource::filtered
                               ? gatherMean(before, premultiplied<K>(t, ledgerBefore, history))
                               : gatherMean(signal, t);

@@ -49,8 +49,8 @@ struct Ledger {
 
  private:
   Real normalised(const std::array<Real, kPairs>& sums, int g, int h) const {
-    const Real w = weight[g] * weight[h];
-    return w > 0 ? sums[pairIndex<K>(g, h)] / w : Real(0);
+    if (!(weight[g] > 0 && weight[h] > 0)) return 0;
+    return sums[pairIndex<K>(g, h)] / weight[g] / weight[h];  // the product of two small weights could underflow
   }
 };
 
