@@ -26,16 +26,18 @@ inline float noise(core::Rng& rng, int n) {
   return n > 0 ? static_cast<float>(sum / n) : 0.0f;
 }
 
-/// A sequence of frames on a wall: signal(x, y, frame) times noise, counts(x, y, frame) samples.
+/// A sequence of frames on a wall: signal(x, y, frame) times noise, counts(x, y, frame) samples, each of which is the
+/// mean of so many exponential variates (relative noise of a sample: 1 / sqrt of that).
 class Synthetic {
  public:
   using Signal = std::function<core::vec3(int, int, int)>;
   using Counts = std::function<int(int, int, int)>;
 
-  Synthetic(int width, int height, std::uint64_t seed, Signal signal, Counts counts)
+  Synthetic(int width, int height, std::uint64_t seed, Signal signal, Counts counts, int variatesPerSample = 1)
       : seed_(seed),
         signal_(std::move(signal)),
         counts_(std::move(counts)),
+        variates_(variatesPerSample),
         guide_(wall(width, height)),
         radiance_(width, height),
         albedo_(width, height, 1),
@@ -50,7 +52,7 @@ class Synthetic {
                     static_cast<std::uint32_t>(number));
       const int n = counts_(x, y, number);
       samples_(x, y) = static_cast<float>(n);
-      radiance_.view().store(x, y, noise(rng, n) * signal_(x, y, number));
+      radiance_.view().store(x, y, noise(rng, n * variates_) * signal_(x, y, number));
       taps_(x, y) = number > 0 ? twohistory::stillTap(y * width + x) : twohistory::Taps{};
     });
     return {radiance_, albedo_, emission_, samples_, guide_.view(), guide_.view(), taps_};
@@ -63,6 +65,7 @@ class Synthetic {
   std::uint64_t seed_;
   Signal signal_;
   Counts counts_;
+  int variates_;
   core::GuideImages guide_;
   core::Planes radiance_, albedo_, emission_;
   core::Image<float> samples_;
