@@ -165,4 +165,60 @@ TEST_F(Cli, OutputThatCannotBeWrittenIsAFailure) {
   EXPECT_EQ(WEXITSTATUS(status), 1);
 }
 
+/// A triangle whose buffer and texture lie in files that need not exist.
+std::string gltfWith(const std::string& buffer, const std::string& texture) {
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
+    "materials":[{"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}}],
+    "textures":[{"source":0}],"images":[{"uri":")" +
+         texture + R"("}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+    "min":[0,0,0],"max":[1,1,0]}],"bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":")" +
+         buffer + R"("}]})";
+}
+
+TEST_F(Cli, BrokenScenesEndRenderAndRunWithOneLineAndNoFile) {
+  write("text.gltf", "this is no scene");
+  write("empty.glb", "");
+  write("buffer.gltf", gltfWith("absent.bin", "absent.png"));
+  write("triangle.bin", std::string(36, '\0'));
+  write("texture.gltf", gltfWith("triangle.bin", "absent.png"));
+  for (const char* scene : {"text.gltf", "empty.glb", "buffer.gltf", "texture.gltf", "nowhere.gltf"}) {
+    expectFailure("render '" + file(scene) + "' -o '" + file("out.exr") + "'", 1, scene);
+    EXPECT_FALSE(fs::exists(file("out.exr")));
+    write("config.json", R"({"scenes":[")" + file(scene) + R"("],"frames":1,"width":8,"height":8})");
+    expectFailure("run '" + file("config.json") + "' -o '" + file("results") + "'", 1, scene);
+    EXPECT_FALSE(fs::exists(file("results")));
+  }
+}
+
+TEST_F(Cli, RenderRefusesOptionsThatMeanNothing) {
+  const std::string out = " -o '" + file("out.exr") + "' ";
+  for (const char* wrong :
+       {"--resolution 4294967328x24", "--resolution 12", "--resolution 0x8", "--seed -1", "--seed 99999999999999999999",
+        "--reference 0", "--reference 4 --raw", "--frames 0", "--set restir.demodulate=false", "--set nothing=1",
+        "--set foveation.kind=map", "--set gaze.kind=file", "--threads -1"})
+    expectUsageError("render cornell " + out + wrong);
+  expectUsageError("render cornell -o '" + file("out.png") + "'");
+  EXPECT_FALSE(fs::exists(file("out.exr")));
+}
+
+TEST_F(Cli, RunRefusesNamesThatCollideOrEscape) {
+  const std::string base = "run '" + file("config.json") + "' -o '" + file("results") + "' --set ";
+  write("config.json", R"({"frames":1,"width":8,"height":8,"seeds":[1]})");
+  for (const char* wrong :
+       {"'seeds=[1,1]'", "baseline=nosuch", R"('scenes=["cornell","cornell"]')",
+        R"('variants=["unweighted","unweighted"]')", R"('variants=["unweighted",{"like":"seed","name":"../evil"}]')"})
+    expectUsageError(base + wrong);
+  EXPECT_FALSE(fs::exists(file("results")));
+}
+
+TEST_F(Cli, ASceneWithoutLightIsBlackWithOneWarning) {
+  write("dark.gltf", R"({"asset":{"version":"2.0"}})");
+  const Outcome o = run("render '" + file("dark.gltf") + "' --resolution 8x8 -o '" + file("out.exr") + "'");
+  EXPECT_EQ(o.code, 0) << o.error;
+  EXPECT_NE(o.error.find("no light"), std::string::npos) << o.error;
+  EXPECT_TRUE(fs::exists(file("out.exr")));
+}
+
 }  // namespace

@@ -20,7 +20,8 @@ using twohistory::Step;
 using twohistory::Taps;
 using twohistory::Weighting;
 
-/// Resampling for one target that all pixels share: the reservoir's merge without a renderer.
+/// Resampling for one target that all pixels share. restir's own merge needs a scene; restir_test and restir_world_test
+/// carry it through the same accumulate().
 struct SharedTargetMerge {
   restir::Reservoir gather(In<restir::Reservoir> before, const Step& step) const {
     if (!step.hasHistory()) return {};
@@ -45,6 +46,7 @@ struct Colour {
   using Value = vec3;
   using Fresh = vec3;
   using Merge = twohistory::Mean<vec3>;
+  static float firstNumber(const Fresh& x) { return x.x; }
   static Fresh fresh(int i) { return vec3(static_cast<float>(i), 2, 0.5f * static_cast<float>(i)); }
   static std::vector<float> numbers(const Value& v) { return {v.x, v.y, v.z}; }
 };
@@ -52,6 +54,7 @@ struct Moments {
   using Value = svgf::Moments;
   using Fresh = float;
   using Merge = svgf::MomentsMerge;
+  static float firstNumber(Fresh x) { return x; }
   static Fresh fresh(int i) { return 1 + static_cast<float>(i % 3); }
   static std::vector<float> numbers(const Value& v) { return {v.mean, v.sampleVariance, v.innovations}; }
 };
@@ -59,6 +62,7 @@ struct Reservoir {
   using Value = restir::Reservoir;
   using Fresh = restir::Reservoir;
   using Merge = SharedTargetMerge;
+  static float firstNumber(const Fresh& x) { return static_cast<float>(x.sample.light); }
   static Fresh fresh(int i) { return {{static_cast<std::uint32_t>(i), {0.5f, 0.5f}}, 1.0f / (1 + i), 1, 0}; }
   static std::vector<float> numbers(const Value& v) { return {static_cast<float>(v.sample.light), v.unbiasedWeight}; }
 };
@@ -133,7 +137,8 @@ TYPED_TEST(History, ControlVaryingCountsMakeTheWeightingsDiffer) {
 TYPED_TEST(History, DecayZeroRemembersOnlyTheLastSample) {
   const Policy none{Weighting::frames, Forgetting::decay, 0};
   Ledger<1> end;
-  this->run({1, 1, 1, 1, 7}, none, &end);
+  const auto value = this->run({1, 1, 1, 1, 7}, none, &end);
+  EXPECT_EQ(TypeParam::numbers(value)[0], TypeParam::firstNumber(TypeParam::fresh(4)));
   EXPECT_EQ(end.weight[0], 1);
   EXPECT_FLOAT_EQ(end.covariance(0, 0), 1.0f / 7);
 }
@@ -148,6 +153,18 @@ TEST(Mean, TapsOfUnequalWeightMixInProportionToWhatTheyStandFor) {
   step.taps = twohistory::premultiplied<1>(half, ledger, 0);
   const vec3 mixed = twohistory::Mean<vec3>{}.gather(In<vec3>(value), step);
   EXPECT_FLOAT_EQ(mixed.x, 160.0f / 161);
+}
+
+TEST(Moments, ATapWithoutInnovationsDoesNotDiluteTheVariance) {
+  Image<svgf::Moments> before(2, 1);
+  before(0, 0) = {1, 0.25f, 1};
+  before(1, 0) = {2, 0, 0};
+  Step step;
+  step.taps = {{0, 1, 0, 0}, {0.5f, 0.5f, 0, 0}};
+  const svgf::Moments m = svgf::MomentsMerge{}.gather(In<svgf::Moments>(before), step);
+  EXPECT_FLOAT_EQ(m.mean, 1.5f);
+  EXPECT_FLOAT_EQ(m.sampleVariance, 0.25f);
+  EXPECT_FLOAT_EQ(m.innovations, 0.5f);
 }
 
 TEST(Mean, AFreshValueOfWeightZeroIsNeverRead) {
