@@ -3,7 +3,7 @@
 // X_1, X_2 are two histories of one input with Cov(X_g, X_h) = s2 C_gh / (W_g W_h) ([ledger 4]). p always weighs the
 // history named first: blend = p X_1 + (1 - p) X_2.
 // Sources: [Tu24] "First phase of blending" (its headline formula is kept as publishedWeight for reproduction); lag
-// regression and the consistent blend are this project's, derived in docs/decisions.md.
+// regression and the consistent blend are this project's, derived in docs/history.md.
 #pragma once
 
 #include <array>
