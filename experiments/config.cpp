@@ -30,14 +30,6 @@ Variant variantFrom(const Json& entry, const svgf::FilterParameters& filter, con
   return v;
 }
 
-void requireBaseline(const Config& config) {
-  for (const Variant& v : variantsOf(config))
-    if (v.name == config.baseline) return;
-  if (config.baseline == "raw") return;
-  throw core::UsageError("config.baseline", "'" + config.baseline + "' is not among the variants",
-                         "name one of them, or raw");
-}
-
 void requireDistinct(const Config& config) {
   if (std::set(config.seeds.begin(), config.seeds.end()).size() != config.seeds.size())
     throw core::UsageError("config.seeds", "a seed comes twice", "independent sequences need seeds of their own");
@@ -66,7 +58,7 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
   config.shade.features = config.render.features;
   config.shade.restir.features =
       config.render.features == Features::all ? restir::Features::all : restir::Features::automatic;
-  requireBaseline(config);
+  baselineOf(config);
   requireDistinct(config);
   requireFiles(config);
   if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
@@ -90,6 +82,17 @@ std::vector<Variant> variantsOf(const Config& config) {
   }
   if (variants.empty()) throw core::UsageError("config.variants", "there is none", "give at least one");
   return variants;
+}
+
+std::string baselineOf(const Config& config) {
+  const std::vector<Variant> variants = variantsOf(config);
+  const std::string wanted = config.baseline.empty() ? "unweighted" : config.baseline;
+  for (const Variant& v : variants)
+    if (v.name == wanted) return wanted;
+  if (config.baseline.empty()) return variants.front().name;
+  if (config.baseline == "raw") return wanted;
+  throw core::UsageError("config.baseline", "'" + config.baseline + "' is not among the variants",
+                         "name one of them, or raw");
 }
 
 bool hasReference(const Config& config, int frame) {

@@ -57,7 +57,7 @@ struct Config {
   RenderParameters render;
   svgf::FilterParameters filter;                     ///< of all variants that do not say otherwise
   std::vector<Json> variants{"none", "unweighted"};  ///< names, or {"like": name, "name": new name, changes...}
-  std::string baseline = "unweighted";               ///< what ratios are against
+  std::string baseline;  ///< what ratios are against; empty = unweighted, or the first variant where there is none
   ReferenceParameters reference;
   OutputParameters output;
 };
@@ -76,7 +76,7 @@ void describe(V& v, Config& p) {
   v("render", p.render, "how the machine works");
   v("filter", p.filter, "of all variants that do not say otherwise");
   v("variants", p.variants, "names, or objects {like, name, histories, blend, filter}");
-  v("baseline", p.baseline, "the variant that ratios are against");
+  v("baseline", p.baseline, "the variant that ratios are against; empty = unweighted, else the first");
   v("reference", p.reference, "what errors are measured against");
   v("output", p.output, "images");
 }
@@ -86,6 +86,9 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
 
 /// The variants of a configuration, complete and consistent. Throws core::UsageError.
 std::vector<Variant> variantsOf(const Config& config);
+
+/// The variant that ratios are against. Throws core::UsageError where the one named is not there.
+std::string baselineOf(const Config& config);
 
 /// True for frames that have a reference: every `every`-th, and the last.
 bool hasReference(const Config& config, int frame);

@@ -30,7 +30,7 @@ class Runner {
         gallery_(config_, folder_ / "images") {
     config_.output.frames = galleryFrames(config);
     results_.config = toJson(config_);
-    results_.baseline = config.baseline;
+    results_.baseline = baselineOf(config_);
     results_.provenance = currentProvenance();
   }
 
