@@ -45,13 +45,13 @@ Results example() {
   return r;
 }
 
-const Summary& find(const std::vector<Summary>& all, const std::string& variant, const std::string& region) {
+Summary find(const std::vector<Summary>& all, const std::string& variant, const std::string& region) {
   return *std::find_if(all.begin(), all.end(),
                        [&](const Summary& s) { return s.variant == variant && s.region == region; });
 }
 
 TEST(Results, SummariesHoldStudentsInterval) {
-  const Summary& s = find(summarise(example().rows), "unweighted", "full");
+  const Summary s = find(summarise(example().rows), "unweighted", "full");
   EXPECT_DOUBLE_EQ(s.value.mean, 2);
   // Three values 1, 2, 3: standard error 1 / sqrt(3), t = 4.30265 at two degrees of freedom (published table).
   EXPECT_NEAR(s.value.high - 2, 4.30265 / std::sqrt(3.0), 1e-4);
