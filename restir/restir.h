@@ -40,7 +40,7 @@ enum class Features { automatic, all };
 
 struct TemporalParameters {
   twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 20};
-  Choice tap = Choice::best;  ///< measured 5 to 18 % less error in `market` than stochastic
+  Choice tap = Choice::stochastic;  ///< `best` is 5 % quieter in the median but keeps its fireflies: docs/decisions.md
   /// Targets of the history: with the surface, viewer and lights it had (unbiased), or with this frame's (cheaper).
   bool previousSurface = true, previousCamera = true, previousLights = true;
 };
