@@ -33,12 +33,14 @@ RestirParameters wide(Reuse reuse = Reuse::both, Mis mis = Mis::balance) {
 }
 
 void expectUnbiased(const World& world, const RestirParameters& p, int sequences, const Hooks& hooks = {}) {
-  const auto c = tests::compare(tests::estimate(world, p, sequences, hooks), tests::reference(world, 16, 512));
+  const auto c =
+      tests::compare(tests::estimate(world, p, sequences, hooks), tests::reference(world, 16, 512, hooks.compared));
   EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
   EXPECT_LT(c.detectable, 0.02);
 }
 void expectBiased(const World& world, const RestirParameters& p, int sequences, const Hooks& hooks = {}) {
-  const auto c = tests::compare(tests::estimate(world, p, sequences, hooks), tests::reference(world, 16, 512));
+  const auto c =
+      tests::compare(tests::estimate(world, p, sequences, hooks), tests::reference(world, 16, 512, hooks.compared));
   EXPECT_GT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
   EXPECT_GT(std::abs(c.ratio - 1), 0.02);
 }
@@ -73,7 +75,7 @@ TEST(Restir, CountsThatVaryAndVanishLeaveItUnbiased) {
   Motion motion;
   motion.light = vec3(0.2f, 0, 0.05f);
   const World world(tests::makeWorld(motion), kFrames);
-  expectUnbiased(world, wide(), 768, {patchwork, {}});
+  expectUnbiased(world, wide(), 768, {patchwork, {}, {}});
 }
 
 /// A frame of samples, then none while a lamp rises from below the floor, then one.
@@ -87,7 +89,7 @@ World worldOfARisingLamp() {
 }
 
 TEST(Restir, ReservoirsThatWaitedWhileLightsMovedAreUnbiased) {
-  expectUnbiased(worldOfARisingLamp(), wide(Reuse::temporal), 1536, {pause, {}});
+  expectUnbiased(worldOfARisingLamp(), wide(Reuse::temporal), 1536, {pause, {}, {}});
 }
 
 TEST(Restir, ReservoirsThatForgetTheirFrameAreBiased) {
@@ -95,7 +97,25 @@ TEST(Restir, ReservoirsThatForgetTheirFrameAreBiased) {
   const auto restamp = [](int frame, restir::RestirState& state) {
     for (int i = 0; i < tests::kPixels; ++i) state.now.data()[i].frame = static_cast<std::uint32_t>(frame);
   };
-  expectBiased(worldOfARisingLamp(), wide(Reuse::temporal), 1536, {pause, restamp});
+  expectBiased(worldOfARisingLamp(), wide(Reuse::temporal), 1536, {pause, restamp, {}});
+}
+
+/// As pause, but in the last frame every other pixel has no samples either: its reservoir waits on, and its neighbours
+/// reuse it with the surface, viewer and lights that it had.
+float pauseHalf(int frame, int x, int y, const vec3& before) {
+  return frame == kFrames - 1 && (x + y) % 2 ? 0.0f : pause(frame, x, y, before);
+}
+bool shadedByPauseHalf(int x, int y) { return (x + y) % 2 == 0; }
+
+TEST(Restir, NeighboursThatWaitAreReusedUnbiased) {
+  expectUnbiased(worldOfARisingLamp(), wide(), 1536, {pauseHalf, {}, shadedByPauseHalf});
+}
+
+TEST(Restir, NeighboursThatForgetTheirFrameAreBiased) {
+  const auto restamp = [](int frame, restir::RestirState& state) {
+    for (int i = 0; i < tests::kPixels; ++i) state.now.data()[i].frame = static_cast<std::uint32_t>(frame);
+  };
+  expectBiased(worldOfARisingLamp(), wide(), 1536, {pauseHalf, restamp, shadedByPauseHalf});
 }
 
 TEST(Restir, TargetsOfTheLastFrameNeedItsLights) {
@@ -113,8 +133,8 @@ TEST(Restir, CountsFromTheLastEstimateAreBiased) {
   const auto driven = [](int f, int, int, const vec3& before) {
     return f == 0 || core::luminance(before) > 0.5f ? 1.0f : 16.0f;
   };
-  expectUnbiased(world, p, 1024, {scheduled, {}});
-  expectBiased(world, p, 1024, {driven, {}});
+  expectUnbiased(world, p, 1024, {scheduled, {}, {}});
+  expectBiased(world, p, 1024, {driven, {}, {}});
 }
 
 TEST(Restir, MeanOfManyResultsIsTheMeanOfOne) {
@@ -187,7 +207,7 @@ bool sameBits(const core::Planes& a, const core::Planes& b) {
 
 core::Planes imageOf(const World& world, const RestirParameters& p, int tile = core::kDefaultTile) {
   core::Planes image(tests::kWidth, tests::kHeight);
-  tests::renderSequence(world, p, {patchwork, {}}, 3, image, tile);
+  tests::renderSequence(world, p, {patchwork, {}, {}}, 3, image, tile);
   return image;
 }
 

@@ -129,8 +129,17 @@ struct Hooks {
   /// Sample counts of a frame; radiance: the frame before, 0 in the first. Default: 1 everywhere.
   std::function<float(int frame, int x, int y, const vec3& radianceBefore)> samples;
   /// Called after each frame.
-  std::function<void(int frame, restir::RestirState&)> after;
+  std::function<void(int frame, restir::RestirState&)> after = {};
+  /// Pixels of the last frame that are compared. Default: all.
+  std::function<bool(int x, int y)> compared = {};
 };
+
+/// Blackens what is not compared.
+inline void blank(const std::function<bool(int, int)>& compared, core::Planes& image) {
+  for (int y = 0; y < kHeight && compared; ++y)
+    for (int x = 0; x < kWidth; ++x)
+      if (!compared(x, y)) image.view().store(x, y, vec3(0));
+}
 
 /// Renders all frames of a world once; out is the last frame's radiance, not demodulated.
 inline void renderSequence(const World& world, restir::RestirParameters p, const Hooks& hooks, std::uint64_t seed,
@@ -147,6 +156,7 @@ inline void renderSequence(const World& world, restir::RestirParameters p, const
     restir::reuseSpatiallyAndShade(p, frame, state, out);
     if (hooks.after) hooks.after(f, state);
   }
+  blank(hooks.compared, out);
 }
 
 /// Means over independent sequences: of every pixel's luminance in the last frame, and of the frame's sum.
@@ -183,7 +193,8 @@ inline Estimate estimate(const World& world, const restir::RestirParameters& p, 
 }
 
 /// The last frame by light sampling without reuse: `images` independent images of `samples` a pixel.
-inline Estimate reference(const World& world, int images = 64, int samples = 1024) {
+inline Estimate reference(const World& world, int images = 64, int samples = 1024,
+                          const std::function<bool(int, int)>& compared = {}) {
   const core::Moment now = world.moment(world.frames() - 1);
   Estimate result;
   core::Planes image(kWidth, kHeight);
@@ -192,6 +203,7 @@ inline Estimate reference(const World& world, int images = 64, int samples = 102
       const auto pixel = static_cast<std::uint32_t>(y * kWidth + x);
       image.view().store(x, y, restir::meanDirect(now, now.surfaces(x, y), samples, 1000 + i, pixel));
     });
+    blank(compared, image);
     result.add(image);
   }
   return result;
