@@ -88,26 +88,13 @@ Real lagWeight(const PairCovariance<Real>& c, Real firstAge, Real secondAge, Rea
   return denominator > Real(1e-6) * (c.first + c.second) ? numerator / denominator : Real(1);
 }
 
-/// [blend lag] lambda = M^-1 1 / (1' M^-1 1) for K histories, M_jk = C_jk + g a_j a_k, by Cholesky with a ridge of 1e-4
-/// of the mean diagonal; then shrunk towards the best single history until no weight lies below lowest (<= 0). Without
-/// that limit three histories were unstable (up to 15 times the error of one).
 template <int K, class Real>
-std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowest) {
-  std::array<std::array<Real, K>, K> m{};
-  Real trace = 0;
-  int best = 0;
-  for (int j = 0; j < K; ++j)
-    for (int k = 0; k < K; ++k) m[j][k] = ledger.covariance(j, k) + g * ledger.age(j) * ledger.age(k);
-  for (int j = 0; j < K; ++j) {
-    trace += m[j][j];
-    if (m[j][j] < m[best][best]) best = j;
-  }
-  std::array<Real, K> lambda{};
-  lambda[best] = 1;
-  const Real ridge = Real(1e-4) * trace / K;
-  if (!(ridge > 0)) return lambda;
+using Matrix = std::array<std::array<Real, K>, K>;
 
-  std::array<std::array<Real, K>, K> l{};  // m + ridge = l l'
+/// x with (m + ridge) x = 1, by Cholesky; m symmetric, positive semi-definite, ridge > 0.
+template <int K, class Real>
+std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
+  Matrix<K, Real> l{};  // m + ridge = l l'
   for (int j = 0; j < K; ++j) {
     for (int k = 0; k <= j; ++k) {
       Real sum = m[j][k] + (j == k ? ridge : Real(0));
@@ -121,20 +108,52 @@ std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowes
     for (int i = 0; i < j; ++i) x[j] -= l[j][i] * x[i];
     x[j] /= l[j][j];
   }
-  Real total = 0;
   for (int j = K - 1; j >= 0; --j) {
     for (int i = j + 1; i < K; ++i) x[j] -= l[i][j] * x[i];
-    total += x[j] /= l[j][j];
+    x[j] /= l[j][j];
   }
-  if (!(total > 0)) return lambda;
+  return x;
+}
 
-  Real keep = 1;  // share of the solution that stays within the limit
+/// Moves weights of sum 1 towards the single history `best` until none lies below lowest (<= 0).
+template <int K, class Real>
+std::array<Real, K> shrunk(std::array<Real, K> lambda, int best, Real lowest) {
+  Real keep = 1;  // share of lambda that stays within the limit
   for (int j = 0; j < K; ++j) {
-    const Real target = j == best ? Real(1) : Real(0), wanted = x[j] / total;
-    if (wanted < lowest) keep = std::min(keep, (lowest - target) / (wanted - target));
+    const Real target = j == best ? Real(1) : Real(0);
+    if (lambda[j] < lowest) keep = std::min(keep, (lowest - target) / (lambda[j] - target));
   }
-  for (int j = 0; j < K; ++j) lambda[j] += keep * (x[j] / total - lambda[j]);
+  for (int j = 0; j < K; ++j) {
+    const Real target = j == best ? Real(1) : Real(0);
+    lambda[j] = target + keep * (lambda[j] - target);
+  }
   return lambda;
+}
+
+/// [blend lag] lambda = M^-1 1 / (1' M^-1 1) for K histories, M_jk = C_jk + g a_j a_k, with a ridge of 1e-4 of the mean
+/// diagonal; then shrunk until no weight lies below lowest (<= 0). Without that limit three histories were unstable (up
+/// to 15 times the error of one).
+template <int K, class Real>
+std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowest) {
+  Matrix<K, Real> m{};
+  Real trace = 0;
+  int best = 0;
+  for (int j = 0; j < K; ++j)
+    for (int k = 0; k < K; ++k) m[j][k] = ledger.covariance(j, k) + g * ledger.age(j) * ledger.age(k);
+  for (int j = 0; j < K; ++j) {
+    trace += m[j][j];
+    if (m[j][j] < m[best][best]) best = j;
+  }
+  std::array<Real, K> lambda{};
+  lambda[best] = 1;
+  const Real ridge = Real(1e-4) * trace / K;
+  if (!(ridge > 0)) return lambda;
+  std::array<Real, K> x = solveOnes<K, Real>(m, ridge);
+  Real total = 0;
+  for (const Real w : x) total += w;
+  if (!(total > 0)) return lambda;
+  for (Real& w : x) w /= total;
+  return shrunk<K, Real>(x, best, lowest);
 }
 
 }  // namespace twohistory
