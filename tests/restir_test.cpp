@@ -324,7 +324,7 @@ TEST(Restir, RadianceIsDividedByTheAlbedo) {
   }
 }
 
-TEST(Restir, LightsBeyondFloatAreCountedAndStayOutOfTheImage) {
+TEST(Restir, LightsBeyondFloatStayOutOfTheImage) {
   core::Scene scene = tests::makeWorld();
   for (core::Material& m : scene.materials)
     if (m.emits()) m.emission *= 1e37f;
