@@ -12,6 +12,7 @@ void addRunCommand(CLI::App& app);
 void addRenderCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);
+void addLabCommand(CLI::App& app);
 void addPredictCommand(CLI::App& app);
 
 }  // namespace experiments

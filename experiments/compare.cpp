@@ -28,6 +28,8 @@ std::string metricMeaning(const std::string& name) {
       {"energy_over_raw", "mean luminance over that of the unfiltered frame, both over the whole sequence. 1 is right"},
       {"MSE", "mean of (y - r1)(y - r2). Lower is better"},
       {"bias", "mean of y - r. 0 is right"},
+      {"border_step",
+       "squared step of the mean error across the border of the region: what an eye sees of it. Lower is better"},
       {"max_error", "largest |y - r| of any channel. Lower is better"}};
   const auto found = meanings.find(name);
   return found == meanings.end() ? "" : found->second;

@@ -27,6 +27,7 @@ void addCommands(CLI::App& app) {
   experiments::addRenderCommand(app);
   experiments::addCompareCommand(app);
   experiments::addSceneCommand(app);
+  experiments::addLabCommand(app);
   experiments::addPredictCommand(app);
 }
 

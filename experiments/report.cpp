@@ -106,6 +106,7 @@ std::string reportHtml(const ReportData& data) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
       escaped(data.title) + "</title>\n<style>" + kReportStyle + "</style></head>\n<body>\n" + head(data);
   html += section("What was measured", definitions(results));
+  html += section("Overview", data.overview);
   for (const std::string& scene : scenes.inOrder()) html += sceneHtml(results, scene);
   html += section("Frames", figuresHtml(data.figures));
   html += section("Settings", "<details><summary>Every setting of this run</summary>" + htmlSettings(results.config) +

@@ -46,7 +46,7 @@ class Runner {
     results_.rows.insert(results_.rows.end(), means.begin(), means.end());
     sortCanonically(results_);
     saveResults(results_, folder_);
-    saveReport({"Twofold: " + folder_.filename().string(), results_, figures_, notes_}, folder_ / "report.html");
+    saveReport({"Twofold: " + folder_.filename().string(), results_, figures_, "", notes_}, folder_ / "report.html");
     return std::move(results_);
   }
 

@@ -11,10 +11,20 @@ void fillLuminance(PlanesView<const float> colour, ImageView<float> out) {
   core::forEachPixel(out.width, out.height, [&](int x, int y) { out(x, y) = core::luminance(colour.load(x, y)); });
 }
 
+/// Without a spatial filter the accumulated histories are fed back and blended as they are.
+template <int K>
+void keepHistories(FilterState<K>& s) {
+  core::forEachPixel(s.variance.width(), s.variance.height(), [&](int x, int y) {
+    for (int j = 0; j < K; ++j) s.history[j].view().store(x, y, s.accumulated[j].view().load(x, y));
+    s.filteredVariance(x, y) = s.variance(x, y);
+  });
+}
+
 }  // namespace
 
 template <int K>
 void filterHistories(const FilterParameters& parameters, const Guide& guide, FilterState<K>& s) {
+  if (parameters.levels == 0) return keepHistories(s);
   std::array<In<float>, 3 * K> inputs;
   std::array<ImageView<float>, 3 * K> outputs;
   for (int j = 0; j < K; ++j) {

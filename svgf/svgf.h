@@ -24,7 +24,7 @@ using twohistory::Ledger;
 using twohistory::Taps;
 
 struct FilterParameters {
-  int levels = 2;       ///< à-trous levels in all; the first one's result is fed back
+  int levels = 2;       ///< à-trous levels in all; the first one's result is fed back; 0 = no spatial filter
   float phiColour = 4;  ///< [SVGF (5)] sigma_l, times the standard deviation of luminance
   core::EdgeParameters edges;
   float momentsDecay = 0.95f;  ///< of the luminance mean that innovations are measured against
@@ -34,7 +34,7 @@ struct FilterParameters {
 
 template <class V>
 void describe(V& v, FilterParameters& p) {
-  v("levels", p.levels, "a-trous levels, the first of which is fed back", 1.0, 5.0);
+  v("levels", p.levels, "a-trous levels, the first of which is fed back; 0 = no spatial filter", 0.0, 5.0);
   v("phiColour", p.phiColour, "luminance edge weight, in standard deviations", 1e-3, 1e6);
   v("depthScale", p.edges.depthScale, "depth edge weight, in depth slopes", 1e-6, 1e6);
   v("relativeDepth", p.edges.relativeDepth, "depth edge weight, in depths a pixel, added", 0.0, 1.0);
