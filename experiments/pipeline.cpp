@@ -38,7 +38,7 @@ std::array<twohistory::Policy, K> policiesOf(const Variant& v) {
 template <int K>
 twohistory::Histories<K> historiesOf(const svgf::FilterState<K>& s, const Planes& gradient,
                                      PlanesView<const float> target) {
-  return {s.historyViews(), s.ledger[s.now], s.sampleVariance, s.filteredVariance, gradient, target};
+  return {s.historyViews(), s.ledger[s.now], s.sampleVariance, s.samples, s.filteredVariance, gradient, target};
 }
 
 }  // namespace
@@ -48,6 +48,7 @@ ShadeState::ShadeState(const Stage& stage, const ShadeParameters& p, std::uint64
       gaze_(p.gaze),
       foveation_(p.foveation),
       samples_(width, height),
+      check_(p.checkSamples ? width : 0, p.checkSamples ? height : 0),
       fovea_(width, height),
       taps_(width, height),
       restir_(width, height),
@@ -81,6 +82,7 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
   const core::Moment momentNow = now.moment(), momentBefore = before.moment();
   const restir::Frame f{momentNow, momentBefore, s.samples_, s.taps_, s.seed_, p.tile};
   timed(t, "draw candidates", [&] { restir::drawCandidates(p.restir, f, s.restir_); });
+  if (p.checkSamples) timed(t, "check samples", [&] { restir::shadeCheckSamples(p.restir, f, s.restir_, s.check_); });
   timed(t, "reuse temporally", [&] { restir::reuseTemporally(p.restir, f, s.restir_); });
   timed(t, "reuse spatially, shade", [&] { restir::reuseSpatiallyAndShade(p.restir, f, s.restir_, s.radiance_); });
   timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });
@@ -92,6 +94,7 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
           s.restir_.shaded,
           now.gbuffer.guide.view(),
           before.gbuffer.guide.view(),
+          p.checkSamples ? s.check_.view() : In<float>{},
           s.taps_};
 }
 
@@ -99,7 +102,7 @@ namespace {
 
 template <int K>
 void filterFrame(const Shaded& frame, const Variant& v, PlanesView<const float> target, svgf::FilterState<K>& s,
-                 twohistory::GradientState& gradient, twohistory::BlendScratch& scratch, svgf::LevelBuffers& levels,
+                 twohistory::GradientState& gradient, twohistory::BlendState& blending, svgf::LevelBuffers& levels,
                  core::ImageView<float> weight, PassTimes& t, PlanesView<float> out) {
   s.swapFrames();
   timed(t, "accumulate", [&] { svgf::accumulate<K>(v.filter, policiesOf<K>(v), frame.taps, frame.radiance, s); });
@@ -111,10 +114,15 @@ void filterFrame(const Shaded& frame, const Variant& v, PlanesView<const float> 
                                     first, s.history[first], frame.radiance, gradient);
     });
   }
+  if (v.blend.validation.on)
+    timed(t, "check", [&] {
+      svgf::checkBlend<K>(v.blend.validation, policiesOf<K>(v), frame.taps, frame.radiance, frame.check, s,
+                          blending.validation);
+    });
   timed(t, "variance", [&] { svgf::estimateVariance(v.filter, frame.guide, s); });
   timed(t, "filter (first level)", [&] { svgf::filterHistories(v.filter, frame.guide, s); });
   timed(t, "blend", [&] {
-    twohistory::blend<K>(historiesOf(s, gradient.gradient, target), frame.guide, v.blend, scratch, levels.colour[0],
+    twohistory::blend<K>(historiesOf(s, gradient.gradient, target), frame.guide, v.blend, blending, levels.colour[0],
                          levels.variance[0], weight);
   });
   timed(t, "filter (further levels)", [&] {
@@ -141,7 +149,7 @@ void filter(const Shaded& frame, const Variant& variant, PlanesView<const float>
   std::visit(
       [&](auto& s) {
         state.badPixels_ += svgf::dropBadSamples(frame.radiance, frame.samples, s.samples);
-        filterFrame(frame, variant, target, s, state.gradient_, state.scratch_, state.levels_, state.weight_,
+        filterFrame(frame, variant, target, s, state.gradient_, state.blending_, state.levels_, state.weight_,
                     state.times_, out);
       },
       state.histories_);

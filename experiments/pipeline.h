@@ -23,6 +23,7 @@ struct ShadeParameters {
   restir::RestirParameters restir;
   int tile = core::kDefaultTile;  ///< pixels on a side; results do not depend on it
   Features features = Features::automatic;
+  bool checkSamples = false;  ///< shade independent samples too, for variants that check their blend
 };
 
 /// What the filter gets to know of a frame; frames that another renderer wrote can fill one too. Views only.
@@ -31,6 +32,7 @@ struct Shaded {
   core::PlanesView<const float> albedo, emission;
   core::In<float> samples;  ///< n that the radiance stands for, 0 = nothing new in this pixel
   core::Guide guide, guideBefore;
+  core::In<float> check;            ///< luminance of independent results, negative where none; may be empty
   core::In<twohistory::Taps> taps;  ///< where each pixel was in the frame before; none in the first frame
 };
 
@@ -55,7 +57,7 @@ class ShadeState {
   int now_ = 0;
   bool started_ = false;
   std::array<Instant, 2> instants_;
-  core::Image<float> samples_;
+  core::Image<float> samples_, check_;
   core::Image<std::uint8_t> fovea_;
   core::Image<twohistory::Taps> taps_;
   restir::RestirState restir_;
@@ -81,7 +83,7 @@ class FilterState {
                      FilterState& state, core::PlanesView<float> out);
   std::variant<svgf::FilterState<1>, svgf::FilterState<2>, svgf::FilterState<3>> histories_;
   twohistory::GradientState gradient_;
-  twohistory::BlendScratch scratch_;
+  twohistory::BlendState blending_;
   svgf::LevelBuffers levels_;
   core::Image<float> weight_;
   std::int64_t badPixels_ = 0;

@@ -29,7 +29,7 @@ struct ReportData {
   std::string title;
   Results results;
   std::vector<Figure> figures;
-  std::string overview;  ///< HTML of a first section, before the scenes; empty = none
+  std::string overview;            ///< HTML of a first section, before the scenes; empty = none
   std::vector<std::string> notes;  ///< remarks on this run, such as a scene's warnings; one paragraph each
 };
 

@@ -40,6 +40,9 @@ std::vector<Variant> library() {
   Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
   all.blend.mode = BlendMode::lagAll;
   all.blend.pair = {0, 2};
+  Variant checked = all;
+  checked.name = "lag-checked";
+  checked.blend.validation.on = true;
   return {make("none", {frames(0)}),
           make("unweighted", {u}),
           make("unweighted-96", {frames(0.96)}),
@@ -54,6 +57,7 @@ std::vector<Variant> library() {
           lag("lag-wf", {w, f}, -0.5f, 1.5f, NoiseEstimate::predicted),
           lag("lag-safe", {u, f}, -0.5f, 1.0f, NoiseEstimate::safe),
           all,
+          checked,
           make("oracle", {u, w}, BlendMode::oracle)};
 }
 

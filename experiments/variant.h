@@ -26,7 +26,7 @@ void describe(V& v, Variant& p) {
 }
 
 /// The variants of the field and of this project by name: none, unweighted, unweighted-96, unweighted-98, weighted,
-/// published, optimal, seed, seed-slide, consistent, lag-uw, lag-wf, lag-safe, lag-uwf, oracle.
+/// published, optimal, seed, seed-slide, consistent, lag-uw, lag-wf, lag-safe, lag-uwf, lag-checked, oracle.
 std::vector<std::string> variantNames();
 /// Throws core::UsageError, naming the known ones, for any other name.
 Variant variantByName(const std::string& name);

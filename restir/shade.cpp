@@ -112,6 +112,27 @@ std::int64_t countBad(const Frame& frame, In<float> shaded) {
 
 }  // namespace
 
+void shadeCheckSamples(const RestirParameters& p, const Frame& frame, const RestirState& state,
+                       core::ImageView<float> luminance) {
+  const std::uint32_t phase = core::Rng(frame.seed, core::Pass::other, 0, frame.now.frame).below(4);
+  withLightFeatures(p, frame, [&]<LightFeatures F>() {
+    core::forEachPixel(
+        luminance.width, luminance.height,
+        [&](int x, int y) {
+          luminance(x, y) = -1;
+          const Surface& surface = frame.now.surfaces(x, y);
+          if (static_cast<std::uint32_t>((x & 1) + 2 * (y & 1)) != phase || !surface.hit() ||
+              !(frame.samples(x, y) > 0))
+            return;
+          const Pixel<F> pixel{p, frame, state, {x, y}, surface, partsOf(frame, x, y).target<F>()};
+          vec3 colour = shadeSample(pixel, state.fresh(x, y));
+          if (p.demodulate) colour /= core::demodulationAlbedo(surface);
+          if (core::isFinite(colour)) luminance(x, y) = core::luminance(colour);
+        },
+        frame.tile);
+  });
+}
+
 void reuseSpatiallyAndShade(const RestirParameters& p, const Frame& frame, RestirState& state,
                             PlanesView<float> radiance) {
   withLightFeatures(p, frame, [&]<LightFeatures F>() {

@@ -55,7 +55,7 @@ class Synthetic {
       radiance_.view().store(x, y, noise(rng, n * variates_) * signal_(x, y, number));
       taps_(x, y) = number > 0 ? twohistory::stillTap(y * width + x) : twohistory::Taps{};
     });
-    return {radiance_, albedo_, emission_, samples_, guide_.view(), guide_.view(), taps_};
+    return {radiance_, albedo_, emission_, samples_, guide_.view(), guide_.view(), {}, taps_};
   }
   core::vec3 truth(int x, int y, int number) const { return signal_(x, y, number); }
   core::GuideImages& guide() { return guide_; }

@@ -2,7 +2,7 @@
 
 #include "core/parallel.h"
 #include "twohistory/combination.h"
-#include "twohistory/drift.h"
+#include "twohistory/lag.h"
 
 namespace twohistory {
 namespace {
@@ -37,9 +37,22 @@ struct Sink {
   const Histories<K>& h;
   core::PlanesView<float> out;
   core::ImageView<float> variance, weight;
-  int reported;  ///< history whose weight is written to `weight`
+  int reported;            ///< history whose weight is written to `weight`
+  Validation* validation;  ///< null = blends go unchecked
 
-  void write(int x, int y, const Weights<K>& lambda) const {
+  /// Books the blend's shifts away from history 0 for the next check, and takes back what earlier checks refuted.
+  Weights<K> checked(int x, int y, Weights<K> lambda) const {
+    Shifts shift{};
+    for (int j = 1; j < K; ++j) shift[j - 1] = lambda[j] * luminance(h.colour[j].load(x, y) - h.colour[0].load(x, y));
+    validation->storeShifts(x, y, shift);
+    const Shifts keep = validation->keep(x, y, validation->regime(x, y));
+    lambda[0] = 1;
+    for (int j = 1; j < K; ++j) lambda[j] *= keep[j - 1], lambda[0] -= lambda[j];
+    return lambda;
+  }
+
+  void write(int x, int y, const Weights<K>& wanted) const {
+    const Weights<K> lambda = validation ? checked(x, y, wanted) : wanted;
     vec3 sum(0);
     for (int j = 0; j < K; ++j)
       if (lambda[j] != 0) sum += lambda[j] * h.colour[j].load(x, y);
@@ -89,48 +102,54 @@ float localWeight(const Histories<K>& h, const BlendParameters& p, int x, int y)
   }
 }
 
-/// x / s2 for x, s2 >= 0, at most 1e6: without noise any drift is certain. No 0 / 0, also where both have underflowed.
-float inUnitsOf(float s2, float x) {
-  constexpr float kMost = 1e6f;
-  if (!(x > 0)) return 0;
-  return x < kMost * s2 ? x / s2 : kMost;
-}
-
-/// Blends that look at the window around the pixel.
+/// Blends of a pair that look at the window around the pixel.
 template <int K>
-Weights<K> driftWeights(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
+Weights<K> pairWeightsByDrift(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
   const int a = p.pair[0], b = p.pair[1];
-  const float mean = row.mean(i), s2 = row.meanSampleVariance(i);
-  const float noise2 = p.noise == NoiseEstimate::safe ? row.safeNoise(i) : row.predictedNoise(i);
-  const float excess = inUnitsOf(s2, std::max(0.0f, mean * mean - noise2));
+  const float mean = row.mean(0, i);
+  const float noise2 = p.noise == NoiseEstimate::safe ? row.safeNoise(0, i) : row.predictedNoise(0, i);
+  const float excess = cappedRatio(std::max(0.0f, mean * mean - noise2), row.meanSampleVariance(i));
   const PairCovariance<float> c = pairOf(ledger, a, b);
   if (p.mode == BlendMode::consistent) return pairWeights<K>(p, consistentWeight(c, excess));
   const float g = squaredDrift(excess, ledger.age(a), ledger.age(b));  // [blend G2]
-  if (p.mode == BlendMode::lagAll) return lagWeights(ledger, g, p.lowest);
   return pairWeights<K>(p, std::clamp(lagWeight(c, ledger.age(a), ledger.age(b), g), p.lowest, p.highest));
 }
 
-/// Fills the planes that sumDrift averages.
 template <int K>
-void prepareDrift(const Histories<K>& h, const BlendParameters& p, BlendScratch& scratch) {
-  const int a = p.pair[0], b = p.pair[1];
+Weights<K> driftWeights(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
+  if (p.mode != BlendMode::lagAll) return pairWeightsByDrift<K>(ledger, p, row, i);
+  const Against<K> against(p.pair[1]);
+  return lagWeights(ledger, against, windowEvidence(ledger, against, row, i, p.noise == NoiseEstimate::safe), p.lowest);
+}
+
+/// Fills the planes that sumDrift averages: lum(X_j - X_k) and its noise.
+template <int K>
+void prepareDifference(const Histories<K>& h, int j, int k, core::ImageView<float> value,
+                       core::ImageView<float> noise) {
   core::forEachPixel(h.ledger.width, h.ledger.height, [&](int x, int y) {
-    const Ledger<K>& ledger = h.ledger(x, y);
-    scratch.difference(x, y) = luminance(h.colour[a].load(x, y) - h.colour[b].load(x, y));
-    scratch.noise(x, y) = h.sampleVariance(x, y) * meanPairOf(ledger, a, b).difference();
+    value(x, y) = luminance(h.colour[j].load(x, y) - h.colour[k].load(x, y));
+    noise(x, y) = h.sampleVariance(x, y) * meanPairOf(h.ledger(x, y), j, k).difference();
   });
 }
 
+/// lagAll compares every history with the freshest, the others their pair.
 template <int K>
-void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, BlendScratch& scratch,
+void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, BlendState& state,
                   const Sink<K>& sink) {
-  scratch.fit(guide.width(), guide.height());
-  prepareDrift(h, p, scratch);
+  const bool all = p.mode == BlendMode::lagAll;
+  const Against<K> against(p.pair[1]);
+  const int count = all ? K - 1 : 1;
+  state.fit(count, guide.width(), guide.height());
+  std::array<Difference, DriftRow::kMost> differences;
+  for (int k = 0; k < count; ++k) {
+    prepareDifference(h, all ? against.of[k] : p.pair[0], p.pair[1], state.difference[k], state.noise[k]);
+    differences[k] = {state.difference[k], state.noise[k]};
+  }
   core::forEachRow(guide.height(), [&](int y) {
     DriftRow row;
     for (int x0 = 0; x0 < guide.width(); x0 += core::kBlock) {
       const int x1 = std::min(x0 + core::kBlock, guide.width());
-      sumDrift(guide, p.edges, scratch.difference, scratch.noise, h.sampleVariance, p.radius, y, x0, x1, row);
+      sumDrift(guide, p.edges, differences.data(), count, h.sampleVariance, p.radius, y, x0, x1, row);
       for (int x = x0; x < x1; ++x) sink.write(x, y, driftWeights(h.ledger(x, y), p, row, x - x0));
     }
   });
@@ -138,11 +157,19 @@ void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendPa
 
 }  // namespace
 
+void BlendState::fit(int differences, int width, int height) {
+  for (int k = 0; k < differences; ++k) {
+    if (difference[k].width() == width && difference[k].height() == height) continue;
+    difference[k] = core::Image<float>(width, height);
+    noise[k] = core::Image<float>(width, height);
+  }
+}
+
 template <int K>
-void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, BlendScratch& scratch,
+void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, BlendState& state,
            core::PlanesView<float> out, core::ImageView<float> variance, core::ImageView<float> weight) {
   CHECK_LT(p.pair[0], K);
-  const Sink<K> sink{h, out, variance, weight, p.pair[0]};
+  const Sink<K> sink{h, out, variance, weight, p.pair[0], p.validation.on ? &state.validation : nullptr};
   const int width = guide.width(), height = guide.height();
   if (p.mode == BlendMode::first) {
     Weights<K> only{};
@@ -151,16 +178,16 @@ void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameter
   }
   CHECK_LT(p.pair[1], K);
   if (p.mode == BlendMode::lag || p.mode == BlendMode::lagAll || p.mode == BlendMode::consistent)
-    return blendByDrift(h, guide, p, scratch, sink);
+    return blendByDrift(h, guide, p, state, sink);
   core::forEachPixel(width, height,
                      [&](int x, int y) { sink.write(x, y, pairWeights<K>(p, localWeight(h, p, x, y))); });
 }
 
-template void blend(const Histories<1>&, const core::Guide&, const BlendParameters&, BlendScratch&,
+template void blend(const Histories<1>&, const core::Guide&, const BlendParameters&, BlendState&,
                     core::PlanesView<float>, core::ImageView<float>, core::ImageView<float>);
-template void blend(const Histories<2>&, const core::Guide&, const BlendParameters&, BlendScratch&,
+template void blend(const Histories<2>&, const core::Guide&, const BlendParameters&, BlendState&,
                     core::PlanesView<float>, core::ImageView<float>, core::ImageView<float>);
-template void blend(const Histories<3>&, const core::Guide&, const BlendParameters&, BlendScratch&,
+template void blend(const Histories<3>&, const core::Guide&, const BlendParameters&, BlendState&,
                     core::PlanesView<float>, core::ImageView<float>, core::ImageView<float>);
 
 }  // namespace twohistory

@@ -5,7 +5,9 @@
 
 #include "core/edge_weight.h"
 #include "core/guide.h"
+#include "twohistory/drift.h"
 #include "twohistory/ledger.h"
+#include "twohistory/validation.h"
 
 namespace twohistory {
 
@@ -17,12 +19,12 @@ enum class BlendMode {
   seedSlide,   ///< the same with the slides' gradient
   consistent,  ///< one closed form in place of p and q
   lag,         ///< lag regression: least estimated true error; the flagship
-  lagAll,      ///< lag regression over all K histories
+  lagAll,      ///< lag regression over all K histories; pair[1] is the freshest, which the others are compared with
   oracle,      ///< best p in [0, 1] against the reference; p_opt in frames without one
 };
 
 /// predicted: from the power sums. safe: the largest of that and two measured ones (spread in the window, spread of
-/// four quadrant means).
+/// four quadrant means); lagAll then also scales pixel noise by its measured over its predicted variance.
 enum class NoiseEstimate { predicted, safe };
 
 struct BlendParameters {
@@ -32,6 +34,7 @@ struct BlendParameters {
   int radius = 3;                        ///< of the window that estimates drift, pixels
   NoiseEstimate noise = NoiseEstimate::predicted;
   core::EdgeParameters edges;
+  ValidationParameters validation;
 };
 
 template <class V>
@@ -54,6 +57,7 @@ void describe(V& v, BlendParameters& p) {
   v("radius", p.radius, "radius in pixels of the window that estimates drift", 0.0, 8.0);
   v.choice("noise", p.noise, {{"predicted", NoiseEstimate::predicted}, {"safe", NoiseEstimate::safe}},
            "how the noise of the histories' mean difference is estimated");
+  v("validation", p.validation, "check of the blend against samples that it has not seen");
 }
 
 /// What a blend reads. All images have one size; colours are after the first filter level.
@@ -62,26 +66,26 @@ struct Histories {
   std::array<core::PlanesView<const float>, K> colour;
   core::In<Ledger<K>> ledger;
   core::In<float> sampleVariance;          ///< s2: luminance variance of one sample
+  core::In<float> samples;                 ///< n of this frame
   core::In<float> variance;                ///< luminance variance of history 0 after the filter
   core::PlanesView<const float> gradient;  ///< seed, seedSlide: change per frame; else empty
   core::PlanesView<const float> target;    ///< oracle: the demodulated truth; else empty
 };
 
-/// Planes that the window estimate needs; kept by the caller so that no frame allocates.
-struct BlendScratch {
-  core::Image<float> difference, noise;
-  void fit(int width, int height) {
-    if (difference.width() == width && difference.height() == height) return;
-    difference = core::Image<float>(width, height);
-    noise = core::Image<float>(width, height);
-  }
+/// What a blend keeps: planes that the window estimate needs, allocated once, and the check of earlier frames.
+struct BlendState {
+  std::array<core::Image<float>, DriftRow::kMost> difference, noise;
+  Validation validation;
+
+  /// Makes room for as many differences as a blend looks at.
+  void fit(int differences, int width, int height);
 };
 
 /// Blends every pixel into out, and writes the luminance variance that remains. K = 1, 2 or 3.
 /// weight: p where the blend has one (else 1); may be empty.
 template <int K>
 void blend(const Histories<K>& histories, const core::Guide& guide, const BlendParameters& parameters,
-           BlendScratch& scratch, core::PlanesView<float> out, core::ImageView<float> variance,
+           BlendState& state, core::PlanesView<float> out, core::ImageView<float> variance,
            core::ImageView<float> weight = {});
 
 }  // namespace twohistory

@@ -115,13 +115,13 @@ std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
   return x;
 }
 
-/// Moves weights of sum 1 towards the single history `best` until none lies below lowest (<= 0).
+/// Moves weights of sum 1 towards the single history `best` until none lies below its limit (<= 0).
 template <int K, class Real>
-std::array<Real, K> shrunk(std::array<Real, K> lambda, int best, Real lowest) {
-  Real keep = 1;  // share of lambda that stays within the limit
+std::array<Real, K> shrunk(std::array<Real, K> lambda, int best, const std::array<Real, K>& lowest) {
+  Real keep = 1;  // share of lambda that stays within the limits
   for (int j = 0; j < K; ++j) {
     const Real target = j == best ? Real(1) : Real(0);
-    if (lambda[j] < lowest) keep = std::min(keep, (lowest - target) / (lambda[j] - target));
+    if (lambda[j] < lowest[j]) keep = std::min(keep, (lowest[j] - target) / (lambda[j] - target));
   }
   for (int j = 0; j < K; ++j) {
     const Real target = j == best ? Real(1) : Real(0);
@@ -130,16 +130,13 @@ std::array<Real, K> shrunk(std::array<Real, K> lambda, int best, Real lowest) {
   return lambda;
 }
 
-/// [blend lag] lambda = M^-1 1 / (1' M^-1 1) for K histories, M_jk = C_jk + g a_j a_k, with a ridge of 1e-4 of the mean
-/// diagonal; then shrunk until no weight lies below lowest (<= 0). Without that limit three histories were unstable (up
-/// to 15 times the error of one).
+/// [blend lag] lambda = M^-1 1 / (1' M^-1 1), the weights of sum 1 with the least lambda' M lambda, with a ridge of
+/// 1e-4 of the mean diagonal; then shrunk until none lies below its limit (<= 0). Without limits three histories were
+/// unstable (up to 15 times the error of one).
 template <int K, class Real>
-std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowest) {
-  Matrix<K, Real> m{};
+std::array<Real, K> leastErrorWeights(const Matrix<K, Real>& m, const std::array<Real, K>& lowest) {
   Real trace = 0;
   int best = 0;
-  for (int j = 0; j < K; ++j)
-    for (int k = 0; k < K; ++k) m[j][k] = ledger.covariance(j, k) + g * ledger.age(j) * ledger.age(k);
   for (int j = 0; j < K; ++j) {
     trace += m[j][j];
     if (m[j][j] < m[best][best]) best = j;
@@ -154,6 +151,17 @@ std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowes
   if (!(total > 0)) return lambda;
   for (Real& w : x) w /= total;
   return shrunk<K, Real>(x, best, lowest);
+}
+
+/// The same for one drift g = G^2 / s2 a frame, M_jk = C_jk + g a_j a_k, and one limit.
+template <int K, class Real>
+std::array<Real, K> lagWeights(const Ledger<K, Real>& ledger, Real g, Real lowest) {
+  Matrix<K, Real> m{};
+  for (int j = 0; j < K; ++j)
+    for (int k = 0; k < K; ++k) m[j][k] = ledger.covariance(j, k) + g * ledger.age(j) * ledger.age(k);
+  std::array<Real, K> limits;
+  limits.fill(lowest);
+  return leastErrorWeights<K, Real>(m, limits);
 }
 
 }  // namespace twohistory

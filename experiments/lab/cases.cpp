@@ -140,8 +140,8 @@ std::vector<Case> defaultCases() {
 }
 
 std::vector<Json> defaultVariants() {
-  return {"unweighted", "unweighted-96", "unweighted-98", "weighted", "published", "optimal", "seed",
-          "seed-slide", "consistent",    "lag-uw",        "lag-wf",   "lag-safe",  "lag-uwf", "oracle"};
+  return {"unweighted", "unweighted-96", "unweighted-98", "weighted", "published", "optimal",     "seed",  "seed-slide",
+          "consistent", "lag-uw",        "lag-wf",        "lag-safe", "lag-uwf",   "lag-checked", "oracle"};
 }
 
 }  // namespace experiments::lab

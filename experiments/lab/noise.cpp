@@ -39,9 +39,9 @@ NoiseField::NoiseField(const NoiseParameters& p, std::uint64_t seed, int width, 
     : parameters_(p), seed_(seed), now_(width, height), before_(width, height) {}
 
 /// Mean of n independent samples' factors. The variance that sharing over a window takes away is drawn in advance.
-float NoiseField::fresh(core::Rng& rng, float n) const {
+float NoiseField::fresh(core::Rng& rng, float n, bool shared) const {
   const NoiseParameters& p = parameters_;
-  const float count = std::max(n, 1.0f), spread = p.sigma * p.sigma * (p.shared ? kSharedBy : 1.0f);
+  const float count = std::max(n, 1.0f), spread = p.sigma * p.sigma * (shared ? kSharedBy : 1.0f);
   float factor = spread > 0 ? gammaVariate(rng, count / spread) : 1;
   if (p.fireflies > 0) {
     float bright = 0;
@@ -58,8 +58,13 @@ void NoiseField::advance(core::In<float> n, core::In<twohistory::Taps> taps, std
     core::Rng rng(seed_, core::Pass::lab, static_cast<std::uint32_t>(y * n.width + x), frame);
     const bool kept = parameters_.held > 0 && taps(x, y).valid() && rng.uniform() < parameters_.held;
     now_(x, y) = kept ? before_.data()[chooseTap(taps(x, y), twohistory::Choice::stochastic, rng.uniform()).pixel[0]]
-                      : fresh(rng, n(x, y));
+                      : fresh(rng, n(x, y), parameters_.shared);
   });
+}
+
+float NoiseField::independent(int x, int y, float n, std::uint32_t frame) const {
+  core::Rng rng(seed_, core::Pass::other, static_cast<std::uint32_t>(y * now_.width() + x), frame);
+  return fresh(rng, n, false);
 }
 
 float NoiseField::at(int x, int y) const {

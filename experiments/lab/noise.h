@@ -37,9 +37,13 @@ class NoiseField {
   void advance(core::In<float> n, core::In<twohistory::Taps> taps, std::uint32_t frame);
   /// Factor of mean 1 at a pixel.
   float at(int x, int y) const;
+  /// Whether factors of one frame depend on those of another pixel or frame.
+  bool isReused() const { return parameters_.held > 0 || parameters_.shared; }
+  /// A factor that does not, for a pixel of n samples.
+  float independent(int x, int y, float n, std::uint32_t frame) const;
 
  private:
-  float fresh(core::Rng& rng, float n) const;
+  float fresh(core::Rng& rng, float n, bool shared) const;
 
   NoiseParameters parameters_;
   std::uint64_t seed_;

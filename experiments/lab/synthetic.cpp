@@ -27,6 +27,7 @@ Synthetic::Synthetic(const Case& c, std::uint64_t seed, int width, int height)
       albedo_(width, height, 1),
       emission_(width, height, 0),
       samples_(width, height),
+      check_(width, height),
       fovea_(width, height),
       taps_(width, height) {
   for (core::GuideImages& g : guides_) {
@@ -55,6 +56,16 @@ void Synthetic::fillTruth() {
   });
 }
 
+/// One independent result in a block of 2x2 pixels, as the renderer gives.
+void Synthetic::fillCheck() {
+  const auto frame = static_cast<std::uint32_t>(frame_);
+  core::forEachPixel(check_.width(), check_.height(), [&](int x, int y) {
+    const float n = samples_(x, y);
+    const bool checked = n > 0 && static_cast<std::uint32_t>((x & 1) + 2 * (y & 1)) == frame % 4;
+    check_(x, y) = checked ? noise_.independent(x, y, n, frame) * core::luminance(truth_.view().load(x, y)) : -1;
+  });
+}
+
 Shaded Synthetic::next() {
   ++frame_;
   now_ = 1 - now_;
@@ -70,7 +81,9 @@ Shaded Synthetic::next() {
   noise_.advance(samples_, taps_, frame);
   core::forEachPixel(now.width(), now.height(),
                      [&](int x, int y) { radiance_.view().store(x, y, noise_.at(x, y) * truth_.view().load(x, y)); });
-  return {radiance_, albedo_, emission_, samples_, now, before, taps_};
+  const bool reused = noise_.isReused();
+  if (reused) fillCheck();
+  return {radiance_, albedo_, emission_, samples_, now, before, reused ? check_.view() : core::In<float>{}, taps_};
 }
 
 }  // namespace experiments::lab

@@ -45,6 +45,7 @@ class Synthetic {
  private:
   void fillGuide(core::GuideImages& guide) const;
   void fillTruth();
+  void fillCheck();
 
   Case case_;
   std::uint64_t seed_;
@@ -53,7 +54,7 @@ class Synthetic {
   NoiseField noise_;
   std::array<core::GuideImages, 2> guides_;
   core::Planes radiance_, truth_, albedo_, emission_;
-  core::Image<float> samples_;
+  core::Image<float> samples_, check_;
   core::Image<std::uint8_t> fovea_;
   core::Image<twohistory::Taps> taps_;
 };

@@ -1,0 +1,145 @@
+// The laboratory makes the truths, motions and noises that it says, and measures what it says.
+#include "experiments/lab/lab.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "core/statistics.h"
+#include "experiments/lab/measure.h"
+#include "experiments/lab/overview.h"
+
+namespace {
+
+using namespace experiments::lab;
+using core::vec2;
+
+const double kLargestZ = core::sidakBound(1, 1e-6);
+constexpr int kSize = 64;
+
+/// Noise factors of a whole field over some frames of still taps, n samples a pixel.
+core::RunningMoments factors(const NoiseParameters& p, float n, int frames, std::vector<float>* last = nullptr) {
+  NoiseField field(p, 5, kSize, kSize);
+  core::Image<float> counts(kSize, kSize, n);
+  core::Image<twohistory::Taps> taps(kSize, kSize);
+  core::RunningMoments moments;
+  for (int f = 0; f < frames; ++f) {
+    field.advance(counts, taps, static_cast<std::uint32_t>(f));
+    for (int i = 0; i < kSize * kSize; ++i) {
+      moments.add(static_cast<double>(field.at(i % kSize, i / kSize)));
+      if (last) last->push_back(field.at(i % kSize, i / kSize));
+      taps.data()[i] = twohistory::stillTap(i);
+    }
+  }
+  return moments;
+}
+
+TEST(LabNoise, HasMeanOneAndTheVarianceItClaims) {
+  for (const float sigma : {0.5f, 1.5f})
+    for (const float n : {1.0f, 8.0f}) {
+      NoiseParameters p;
+      p.sigma = sigma;
+      const core::RunningMoments m = factors(p, n, 16);
+      EXPECT_LT(std::abs(m.mean() - 1) / std::sqrt(m.meanVariance()), kLargestZ);
+      EXPECT_NEAR(m.variance() * n / (sigma * sigma), 1, 0.05);
+    }
+}
+
+TEST(LabNoise, FirefliesAndSharingKeepMeanAndVariance) {
+  NoiseParameters fireflies;
+  fireflies.fireflies = 1e-3f;
+  const core::RunningMoments m = factors(fireflies, 1, 64);
+  EXPECT_LT(std::abs(m.mean() - 1) / std::sqrt(m.meanVariance()), kLargestZ);
+  NoiseParameters shared;
+  shared.shared = true;
+  EXPECT_NEAR(factors(shared, 4, 32).variance() * 4 / (1.5 * 1.5), 1, 0.06);
+}
+
+TEST(LabNoise, HeldFactorsRepeatAsOftenAsTheySay) {
+  NoiseParameters p;
+  p.held = 0.9f;
+  std::vector<float> all;
+  factors(p, 1, 20, &all);
+  int same = 0;
+  const int pairs = 19 * kSize * kSize;
+  for (int i = 0; i < pairs; ++i) same += all[i] == all[i + kSize * kSize];
+  EXPECT_NEAR(double(same) / pairs, 0.9, 0.01);
+}
+
+TEST(LabMotion, ViewsInvertThemselvesAndMotionFollowsThePlane) {
+  const View now({0.3f, -0.2f, 2}, 7), before({0.3f, -0.2f, 2}, 6);
+  const vec2 p(11, -5);
+  EXPECT_LT(length(now.toImage(now.toPlane(p)) - p), 1e-4f);
+  EXPECT_GT(length(before.toImage(now.toPlane(p)) - p), 0.1f);
+}
+
+TEST(LabSignal, StepsPulsesAndStripesAreWhereTheySay) {
+  SignalParameters s;
+  s.kind = SignalKind::step;
+  EXPECT_EQ(signalAt(s, vec2(0), s.at - 1), 1);
+  EXPECT_EQ(signalAt(s, vec2(0), s.at), s.high);
+  s.kind = SignalKind::pulse;
+  EXPECT_NEAR(signalAt(s, vec2(0), 8), 1.5f, 1e-4f);
+  s.kind = SignalKind::shadow;
+  EXPECT_EQ(signalAt(s, vec2(3, 0), 0), signalAt(s, vec2(10, 0), 7));  // moves one pixel a frame
+  s.kind = SignalKind::edge;
+  EXPECT_NE(signalAt(s, vec2(-1, 0), 0), signalAt(s, vec2(1, 0), 0));
+  EXPECT_EQ(surfaceAt(s, vec2(-1, 0)), surfaceAt(s, vec2(1, 0)));
+  s.separate = true;
+  EXPECT_NE(surfaceAt(s, vec2(-1, 0)), surfaceAt(s, vec2(1, 0)));
+}
+
+TEST(LabMeasure, BorderStepSeesALevelAndNotNoise) {
+  core::Image<float> level(kSize, kSize), noise(kSize, kSize);
+  core::Image<std::uint8_t> inside(kSize, kSize);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      core::Rng rng(1, core::Pass::lab, static_cast<std::uint32_t>(y * kSize + x), 0);
+      inside(x, y) = x < 24;
+      level(x, y) = x < 24 ? 0.5f : 0.2f;
+      noise(x, y) = 0.3f * (rng.uniform() < 0.5f ? -1.0f : 1.0f);
+    }
+  BorderStep ofLevel, ofNoise, ofNothing;
+  ofLevel.add(level, inside);
+  ofNoise.add(noise, inside);
+  EXPECT_NEAR(ofLevel.meanSquare(), 0.09, 1e-6);
+  EXPECT_LT(ofNoise.meanSquare(), 0.1 * 0.09);
+  EXPECT_TRUE(std::isnan(ofNothing.meanSquare()));
+}
+
+LabConfig small() {
+  LabConfig c = labConfigFrom({}, {"width=48", "height=32", "frames=12", "first=6", "seeds=[1,2]"}, "spot-moving");
+  c.variants = {"unweighted", "seed", "lag-checked"};
+  return c;
+}
+
+TEST(Lab, GivesTheSameBitsOnAnyNumberOfThreads) {
+  const auto rowsOn = [](std::size_t threads) {
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return experiments::resultsCsv(runLab(small()));
+  };
+  EXPECT_EQ(rowsOn(1), rowsOn(3));
+}
+
+TEST(Lab, SummarisesEveryVariantInEveryCase) {
+  const experiments::Results results = runLab(small());
+  const auto full = standings(results, "full");
+  ASSERT_EQ(full.size(), 2u);
+  EXPECT_EQ(full[0].variant, "seed");
+  EXPECT_NEAR(full[0].toSeed, 1, 1e-12);
+  EXPECT_GE(full[1].worst, full[1].toBaseline);
+  EXPECT_NE(overviewText(results).find("lag-checked"), std::string::npos);
+  EXPECT_NE(overviewHtml(results).find("<svg"), std::string::npos);
+}
+
+TEST(Lab, RefusesWhatItCannotRun) {
+  const auto refused = [](const std::vector<std::string>& changes, const char* only = "") {
+    EXPECT_THROW(labConfigFrom({}, changes, only), core::UsageError);
+  };
+  refused({}, "no such case");
+  refused({"seeds=[1,1]"});
+  refused({"first=96"});
+  refused({"variants=[\"nobody\"]"});
+  refused({"cases.0.noise.sigma=-1"});
+}
+
+}  // namespace
