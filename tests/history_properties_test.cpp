@@ -1,0 +1,212 @@
+// Properties of the bookkeeping and of every closed-form blend over 100,000 random schedules each. The oracle is the
+// same recursion in double, which ledger_test holds against sums over the whole sequence.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <memory>
+
+#include "tests/schedule.h"
+#include "twohistory/lag.h"
+#include "twohistory/mean.h"
+
+namespace {
+
+using twohistory::Forgetting;
+using twohistory::Ledger;
+using twohistory::PairCovariance;
+using twohistory::Policies;
+using twohistory::Policy;
+using twohistory::Weighting;
+
+constexpr std::uint32_t kSchedules = 100'000;
+
+struct Schedule {
+  std::vector<int> counts;
+  Policies<3> policies;  ///< U, W of one decay, and a third of any weighting and decay
+};
+
+/// Up to 40 frames; hard decays are frequent; the last frame has samples.
+Schedule randomSchedule(std::uint32_t index) {
+  core::Rng rng(21, core::Pass::other, index, 0);
+  Schedule s;
+  s.counts = tests::randomCounts(rng, 1 + static_cast<int>(rng.below(40)), rng.uniform() < 0.2f ? 4096 : 64);
+  s.counts.push_back(1 + static_cast<int>(rng.below(8)));
+  const double decay = tests::randomDecay(rng);
+  const Weighting third = rng.uniform() < 0.5f ? Weighting::frames : Weighting::samples;
+  s.policies = {Policy{Weighting::frames, Forgetting::decay, decay},
+                Policy{Weighting::samples, Forgetting::decay, decay},
+                Policy{third, Forgetting::decay, tests::randomDecay(rng)}};
+  return s;
+}
+
+template <class Real>
+Ledger<3, Real> ledgerOf(const Schedule& s, int scale = 1) {
+  Ledger<3, Real> l;
+  for (const int n : s.counts) l = advance(l, s.policies, static_cast<Real>(n * scale));
+  return l;
+}
+
+template <class L>
+bool sameBits(const L& a, const L& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// Window sums as random histories would leave them, for all closed forms that look at a window.
+std::unique_ptr<twohistory::DriftRow> randomWindow(core::Rng& rng) {
+  auto row = std::make_unique<twohistory::DriftRow>();
+  const auto uniform = [&](float scale) { return scale * (rng.uniform() - 0.5f); };
+  row->weight[0] = 20 + uniform(10), row->weightSquared[0] = 15 + uniform(5);
+  row->sampleVariance[0] = row->weight[0] * rng.uniform();
+  for (auto& sums : row->of) {
+    sums.difference[0] = uniform(20), sums.noise[0] = 10 * rng.uniform();
+    sums.squared[0] = sums.difference[0] * sums.difference[0] / row->weight[0] + 10 * rng.uniform();
+    for (auto& q : sums.quadrant) q[0] = uniform(10);
+  }
+  for (auto& q : row->quadrantWeight) q[0] = 5;
+  return row;
+}
+
+/// The same window at radiance times `scale`.
+void scaleRadiance(twohistory::DriftRow& row, float scale) {
+  row.sampleVariance[0] *= scale * scale;
+  for (auto& sums : row.of) {
+    sums.difference[0] *= scale, sums.squared[0] *= scale * scale, sums.noise[0] *= scale * scale;
+    for (auto& q : sums.quadrant) q[0] *= scale;
+  }
+}
+
+TEST(LeastVariance, IsInRangeWithoutRegretAndNoWorseThanEitherPart) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Schedule s = randomSchedule(i);
+    const float p = leastVarianceWeight(twohistory::pairOf(ledgerOf<float>(s), 0, 1));
+    ASSERT_TRUE(p >= 0 && p <= 1) << "schedule " << i;
+    const PairCovariance<double> exact = twohistory::pairOf(ledgerOf<double>(s), 0, 1);
+    const double got = exact.blend(p), best = exact.blend(leastVarianceWeight(exact));
+    ASSERT_LE(got, best * (1 + 1e-5)) << "schedule " << i;
+    ASSERT_LE(got, std::min(exact.first, exact.second) * (1 + 1e-5)) << "schedule " << i;
+  }
+}
+
+TEST(LeastVariance, ControlTheCancellingQuotientLeavesItsRange) {
+  int failures = 0;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const Ledger<3> l = ledgerOf<float>(randomSchedule(i));
+    const float u = l.covariance(0, 0), w = l.covariance(1, 1), c = l.covariance(0, 1);
+    const float p = (w - c) / (u - 2 * c + w);
+    failures += !(p >= 0 && p <= 1);
+  }
+  EXPECT_GT(failures, 10);
+}
+
+TEST(Bookkeeping, OfAnyPairIsThatOfDoubleArithmetic) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Schedule s = randomSchedule(i);
+    const Ledger<3> l = ledgerOf<float>(s);
+    const Ledger<3, double> exact = ledgerOf<double>(s);
+    for (int g = 0; g < 3; ++g) {
+      ASSERT_NEAR(l.age(g), exact.age(g), 1e-4 * (1 + exact.age(g))) << "schedule " << i;
+      for (int h = g; h < 3; ++h)
+        ASSERT_NEAR(l.covariance(g, h), exact.covariance(g, h), 2e-5 * exact.covariance(g, h)) << "schedule " << i;
+    }
+  }
+}
+
+TEST(Bookkeeping, CovariancesArePositiveSemidefinite) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Ledger<3> l = ledgerOf<float>(randomSchedule(i));
+    core::Rng rng(22, core::Pass::other, i, 0);
+    const core::vec3 x = rng.uniform3() - 0.5f;
+    float form = 0, trace = 0;
+    for (int g = 0; g < 3; ++g) {
+      trace += l.covariance(g, g);
+      for (int h = 0; h < 3; ++h) form += x[g] * x[h] * l.covariance(g, h);
+    }
+    ASSERT_GE(form, -2e-6f * trace) << "schedule " << i;
+  }
+}
+
+// Four times as many samples everywhere: a factor whose square root is exact too, so not a bit may change.
+TEST(Blends, DoNotChangeWhenAllCountsGrowFourfold) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Schedule s = randomSchedule(i);
+    const Ledger<3> one = ledgerOf<float>(s), four = ledgerOf<float>(s, 4);
+    const auto a = twohistory::pairOf(one, 0, 1), b = twohistory::pairOf(four, 0, 1);
+    ASSERT_EQ(leastVarianceWeight(a), leastVarianceWeight(b));
+    ASSERT_EQ(consistentWeight(a, 0.25f), consistentWeight(b, 0.0625f));  // kappa and g are in units of s2
+    ASSERT_EQ(lagWeight(a, one.age(0), one.age(1), 0.25f), lagWeight(b, four.age(0), four.age(1), 0.0625f));
+    ASSERT_EQ(twohistory::lagWeights(one, 0.25f, -0.5f), twohistory::lagWeights(four, 0.0625f, -0.5f));
+  }
+}
+
+TEST(Blends, DoNotChangeWithExposure) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Ledger<3> l = ledgerOf<float>(randomSchedule(i));
+    core::Rng rng(23, core::Pass::other, i, 0);
+    const auto row = randomWindow(rng);
+    const twohistory::Against<3> against(2);
+    const auto before = lagWeights(l, against, windowEvidence(l, against, *row, 0, true), -0.5f);
+    scaleRadiance(*row, i % 2 ? 0x1p-14f : 0x1p20f);
+    ASSERT_EQ(before, lagWeights(l, against, windowEvidence(l, against, *row, 0, true), -0.5f)) << "schedule " << i;
+  }
+}
+
+TEST(Blends, OfThreeHistoriesSumToOneWithinTheirLimits) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Ledger<3> l = ledgerOf<float>(randomSchedule(i));
+    core::Rng rng(24, core::Pass::other, i, 0);
+    const auto row = randomWindow(rng);
+    const twohistory::Against<3> against(2);
+    const auto lambda = lagWeights(l, against, windowEvidence(l, against, *row, 0, true), -0.5f);
+    ASSERT_NEAR(lambda[0] + lambda[1] + lambda[2], 1, 1e-4f) << "schedule " << i;
+    ASSERT_GE(std::min(lambda[0], lambda[1]), -0.5f - 1e-4f);
+    ASSERT_GE(lambda[2], -1e-4f);
+  }
+}
+
+TEST(Bookkeeping, AResetIsAFreshStart) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Schedule s = randomSchedule(i);
+    core::Image<Ledger<3>> before(1, 1, ledgerOf<float>(s));
+    const auto n = static_cast<float>(s.counts.back());
+    const Ledger<3> reset = advance(gather<3, float>({}, before), s.policies, n);
+    ASSERT_TRUE(sameBits(reset, advance(Ledger<3>{}, s.policies, n))) << "schedule " << i;
+  }
+}
+
+TEST(Bookkeeping, DoesNotDependOnTheOrderOfTaps) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    core::Rng rng(25, core::Pass::other, i, 0);
+    core::Image<Ledger<3>> before(4, 1);
+    for (int k = 0; k < 4; ++k) before(k, 0) = ledgerOf<float>(randomSchedule(i + static_cast<std::uint32_t>(k)));
+    twohistory::Taps taps{{0, 1, 2, 3}, {rng.uniform(), rng.uniform(), rng.uniform(), rng.uniform()}};
+    twohistory::Taps turned{{2, 3, 0, 1}, {taps.b[2], taps.b[3], taps.b[0], taps.b[1]}};
+    const Ledger<3> a = gather<3, float>(taps, before), b = gather<3, float>(turned, before);
+    for (int j = 0; j < 3; ++j) ASSERT_NEAR(a.weight[j], b.weight[j], 1e-6f * a.weight[j]);
+    for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_NEAR(a.pixelSums[j], b.pixelSums[j], 1e-6f * a.pixelSums[j]);
+  }
+}
+
+TEST(Bookkeeping, ConstantCountsMakeBothWeightingsOneHistory) {
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    core::Rng rng(26, core::Pass::other, i, 0);
+    const int length = 1 + static_cast<int>(rng.below(60));
+    const bool exact = i % 2 == 0;
+    const auto n = static_cast<float>(exact ? 1u << rng.below(13) : 1 + rng.below(4096));
+    const double decay = tests::randomDecay(rng);
+    const Policies<2> both{Policy{Weighting::frames, Forgetting::decay, decay},
+                           Policy{Weighting::samples, Forgetting::decay, decay}};
+    Ledger<2> l;
+    float u = 0, w = 0;
+    for (int f = 0; f < length; ++f) {
+      const auto step = advanceOf(l, both, n);
+      const float x = rng.uniform();
+      l = advance(l, step, n);
+      u += step.fresh[0] / l.weight[0] * (x - u), w += step.fresh[1] / l.weight[1] * (x - w);
+    }
+    ASSERT_NEAR(u, w, exact ? 0 : 1e-5f) << "schedule " << i;
+    ASSERT_NEAR(l.age(0), l.age(1), exact ? 0 : 1e-5f * (1 + l.age(0)));
+    ASSERT_NEAR(l.covariance(0, 0), l.covariance(1, 1), exact ? 0 : 1e-5f * l.covariance(0, 0));
+  }
+}
+
+}  // namespace
