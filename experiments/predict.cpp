@@ -60,7 +60,7 @@ double Prediction::powerSum(int exponent) const {
   constexpr std::array<int, 3> pairs{twohistory::pairIndex<2>(kFrames, kFrames),
                                      twohistory::pairIndex<2>(kFrames, kSamples),
                                      twohistory::pairIndex<2>(kSamples, kSamples)};
-  return ledger_.pixelSums[pairs[exponent + 1]];
+  return ledger_.powerSums[pairs[exponent + 1]];
 }
 
 /// Weights so small that their squares vanish in double precision count as 0.

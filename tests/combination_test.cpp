@@ -66,8 +66,8 @@ TEST(LeastVarianceWeight, ControlCancellingDenominatorFails) {
   for (int n = 3; n < 100; n += 2) {
     const auto l = pairLedger<float>(std::vector<int>(300, n), 0.95);
     const float u = l.weight[0], w = l.weight[1];
-    const float numerator = u * u * l.pixelSums[2] - u * w * l.pixelSums[1];
-    const float denominator = u * u * l.pixelSums[2] - 2 * u * w * l.pixelSums[1] + w * w * l.pixelSums[0];
+    const float numerator = u * u * l.powerSums[2] - u * w * l.powerSums[1];
+    const float denominator = u * u * l.powerSums[2] - 2 * u * w * l.powerSums[1] + w * w * l.powerSums[0];
     const float p = numerator / denominator;
     outside += !(p >= 0 && p <= 1);
   }
@@ -77,7 +77,7 @@ TEST(LeastVarianceWeight, ControlCancellingDenominatorFails) {
 TEST(PublishedWeight, IsTheSlidesHeadlineAndWorseThanTheProof) {
   const std::vector<int> counts{1, 1, 1, 8, 8, 1, 1};
   const auto l = pairLedger<double>(counts, 0.95);
-  const double u = l.weight[0], w = l.weight[1], minus = l.pixelSums[0], s0 = l.pixelSums[1], s1 = l.pixelSums[2];
+  const double u = l.weight[0], w = l.weight[1], minus = l.powerSums[0], s0 = l.powerSums[1], s1 = l.powerSums[2];
   const double printed =
       std::clamp((u * u * s0 - u * w * s1) / (u * u * s1 - 2 * u * w * s1 + w * w * minus), 0.0, 1.0);
   EXPECT_DOUBLE_EQ(twohistory::publishedWeight(l, 0, 1), printed);

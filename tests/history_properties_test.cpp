@@ -182,7 +182,7 @@ TEST(Bookkeeping, DoesNotDependOnTheOrderOfTaps) {
     twohistory::Taps turned{{2, 3, 0, 1}, {taps.b[2], taps.b[3], taps.b[0], taps.b[1]}};
     const Ledger<3> a = gather<3, float>(taps, before), b = gather<3, float>(turned, before);
     for (int j = 0; j < 3; ++j) ASSERT_NEAR(a.weight[j], b.weight[j], 1e-6f * a.weight[j]);
-    for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_NEAR(a.pixelSums[j], b.pixelSums[j], 1e-6f * a.pixelSums[j]);
+    for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_NEAR(a.powerSums[j], b.powerSums[j], 1e-6f * a.powerSums[j]);
   }
 }
 

@@ -114,7 +114,7 @@ TYPED_TEST(History, AResetIsAFreshStart) {
   const auto b = this->run({3}, kDecay, &start);
   EXPECT_EQ(TypeParam::numbers(a), TypeParam::numbers(b));
   EXPECT_EQ(reset.weight, start.weight);
-  EXPECT_EQ(reset.pixelSums, start.pixelSums);
+  EXPECT_EQ(reset.powerSums, start.powerSums);
 }
 
 TYPED_TEST(History, ConstantPowerOfTwoCountsMakeBothWeightingsTheSameBits) {

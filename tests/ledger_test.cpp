@@ -40,10 +40,9 @@ double worstError(const std::vector<int>& counts, const Policy& g, const Policy&
   check(ledger.weight[1], gh.weightH);
   check(ledger.ageSum[0], gg.ageSumG);
   check(ledger.ageSum[1], hh.ageSumG);
-  check(ledger.pixelSums[0], gg.cross);
-  check(ledger.pixelSums[1], gh.cross);
-  check(ledger.pixelSums[2], hh.cross);
-  check(ledger.meanSums[1], gh.cross);
+  check(ledger.powerSums[0], gg.cross);
+  check(ledger.powerSums[1], gh.cross);
+  check(ledger.powerSums[2], hh.cross);
   return worst;
 }
 
@@ -88,7 +87,7 @@ TEST(Ledger, FramesWithoutSamplesDecayAndAgeButAddNothing) {
   ledger = advance(ledger, {decaying(kSamples, 0.5)}, 0.0);
   EXPECT_DOUBLE_EQ(ledger.weight[0], 2);
   EXPECT_DOUBLE_EQ(ledger.age(0), 1);
-  EXPECT_DOUBLE_EQ(ledger.pixelSums[0], 1);
+  EXPECT_DOUBLE_EQ(ledger.powerSums[0], 1);
   EXPECT_DOUBLE_EQ(ledger.covariance(0, 0), 0.25);  // still four samples' worth
 }
 
@@ -159,10 +158,12 @@ TEST(Ledger, TapsMixSumsAndOrderDoesNotMatter) {
   for (int i = 0; i < 4; ++i) expected += taps.b[i] * before(i % 2, i / 2).weight[0];
   EXPECT_FLOAT_EQ(a.weight[0], expected);
   EXPECT_FLOAT_EQ(a.weight[0], b.weight[0]);
-  EXPECT_FLOAT_EQ(a.pixelSums[0], b.pixelSums[0]);
-  EXPECT_LT(a.pixelSums[0], a.meanSums[0]);  // mixing pixels averages their noise, a neighbourhood's mean keeps it
+  EXPECT_FLOAT_EQ(a.powerSums[0], b.powerSums[0]);
+  float kept = 0;
+  for (int i = 0; i < 4; ++i) kept += taps.b[i] * before(i % 2, i / 2).powerSums[0];
+  EXPECT_LT(a.powerSums[0], kept);  // mixing pixels averages their noise
   const auto one = twohistory::gather<1, float>(twohistory::stillTap(2), before);
-  EXPECT_EQ(one.pixelSums[0], before(0, 1).pixelSums[0]);  // a camera at rest changes no bit
+  EXPECT_EQ(one.powerSums[0], before(0, 1).powerSums[0]);  // a camera at rest changes no bit
 }
 
 TEST(Ledger, ResetIsAFreshStart) {
@@ -172,7 +173,7 @@ TEST(Ledger, ResetIsAFreshStart) {
   const auto after = advance(gathered, {decaying(kFrames, 0.95), decaying(kSamples, 0.8)}, 5.0f);
   const auto fresh = run<float>({5}, decaying(kFrames, 0.95), decaying(kSamples, 0.8));
   EXPECT_EQ(after.weight, fresh.weight);
-  EXPECT_EQ(after.pixelSums, fresh.pixelSums);
+  EXPECT_EQ(after.powerSums, fresh.powerSums);
   EXPECT_EQ(after.ageSum, fresh.ageSum);
 }
 

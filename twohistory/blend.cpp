@@ -128,7 +128,7 @@ void prepareDifference(const Histories<K>& h, int j, int k, core::ImageView<floa
                        core::ImageView<float> noise) {
   core::forEachPixel(h.ledger.width, h.ledger.height, [&](int x, int y) {
     value(x, y) = luminance(h.colour[j].load(x, y) - h.colour[k].load(x, y));
-    noise(x, y) = h.sampleVariance(x, y) * meanPairOf(h.ledger(x, y), j, k).difference();
+    noise(x, y) = h.sampleVariance(x, y) * pairOf(h.ledger(x, y), j, k).difference();
   });
 }
 

@@ -32,12 +32,6 @@ template <int K, class Real>
 PairCovariance<Real> pairOf(const Ledger<K, Real>& ledger, int first, int second) {
   return {ledger.covariance(first, first), ledger.covariance(second, second), ledger.covariance(first, second)};
 }
-/// The same for a mean over a neighbourhood, whose noise mixing taps does not reduce.
-template <int K, class Real>
-PairCovariance<Real> meanPairOf(const Ledger<K, Real>& ledger, int first, int second) {
-  return {ledger.meanCovariance(first, first), ledger.meanCovariance(second, second),
-          ledger.meanCovariance(first, second)};
-}
 
 /// [blend opt] p_opt = A / (A + B) with A = V_2 - C, B = V_1 - C: least variance with p in [0, 1]. No cancelling
 /// denominator: 1 where B <= 0 (also where both histories are the same), 0 where A <= 0.
@@ -54,8 +48,8 @@ Real leastVarianceWeight(const PairCovariance<Real>& c) {
 template <int K, class Real>
 Real publishedWeight(const Ledger<K, Real>& l, int first, int second) {
   const Real wu = l.weight[first], ww = l.weight[second];
-  const Real sMinus = l.pixelSums[pairIndex<K>(first, first)], s0 = l.pixelSums[pairIndex<K>(first, second)],
-             s1 = l.pixelSums[pairIndex<K>(second, second)];
+  const Real sMinus = l.powerSums[pairIndex<K>(first, first)], s0 = l.powerSums[pairIndex<K>(first, second)],
+             s1 = l.powerSums[pairIndex<K>(second, second)];
   const Real denominator = wu * wu * s1 - 2 * wu * ww * s1 + ww * ww * sMinus;
   if (denominator == 0) return 1;
   return std::clamp((wu * wu * s0 - wu * ww * s1) / denominator, Real(0), Real(1));

@@ -38,19 +38,14 @@ struct Ledger {
   static constexpr int kPairs = K * (K + 1) / 2;
   std::array<Real, K> weight{};          ///< W
   std::array<Real, K> ageSum{};          ///< A
-  std::array<Real, kPairs> pixelSums{};  ///< C_gh of one pixel's noise; mixed with b^1.5
-  std::array<Real, kPairs> meanSums{};   ///< C_gh of a neighbourhood's mean noise; mixed with b
+  std::array<Real, kPairs> powerSums{};  ///< C_gh
 
   /// Mean age of history j in frames; 0 where it is empty.
   Real age(int j) const { return weight[j] > 0 ? ageSum[j] / weight[j] : Real(0); }
   /// [ledger 4] in units of s2; 0 where a history is empty.
-  Real covariance(int g, int h) const { return normalised(pixelSums, g, h); }
-  Real meanCovariance(int g, int h) const { return normalised(meanSums, g, h); }
-
- private:
-  Real normalised(const std::array<Real, kPairs>& sums, int g, int h) const {
+  Real covariance(int g, int h) const {
     if (!(weight[g] > 0 && weight[h] > 0)) return 0;
-    return sums[pairIndex<K>(g, h)] / weight[g] / weight[h];  // the product of two small weights could underflow
+    return powerSums[pairIndex<K>(g, h)] / weight[g] / weight[h];  // the product of two small weights could underflow
   }
 };
 
@@ -82,8 +77,7 @@ Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Advance<K, Real>&
       const int i = pairIndex<K>(g, h);
       const Real kept = a.factor[g] * a.factor[h];
       const Real added = n > 0 ? a.fresh[g] * a.fresh[h] / n : Real(0);
-      now.pixelSums[i] = kept * gathered.pixelSums[i] + added;  // [ledger 3]
-      now.meanSums[i] = kept * gathered.meanSums[i] + added;    // [ledger 3]
+      now.powerSums[i] = kept * gathered.powerSums[i] + added;  // [ledger 3]
     }
   }
   return now;
@@ -94,7 +88,7 @@ Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Policies<K>& poli
   return advance(gathered, advanceOf(gathered, policies, n), n);
 }
 
-/// What the taps of the previous frame know. Weights and age sums are sums, so they mix with b; a pixel's power sums
+/// What the taps of the previous frame know. Weights and age sums are sums, so they mix with b; power sums
 /// mix with b^1.5, between b^2 (independent taps) and b (fully dependent ones): measured, see docs/decisions.md.
 template <int K, class Real>
 Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before) {
@@ -108,10 +102,7 @@ Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K,
       sum.weight[j] += b * tap.weight[j];
       sum.ageSum[j] += b * tap.ageSum[j];
     }
-    for (int i = 0; i < Ledger<K, Real>::kPairs; ++i) {
-      sum.pixelSums[i] += power * tap.pixelSums[i];
-      sum.meanSums[i] += b * tap.meanSums[i];
-    }
+    for (int i = 0; i < Ledger<K, Real>::kPairs; ++i) sum.powerSums[i] += power * tap.powerSums[i];
   }
   return sum;
 }

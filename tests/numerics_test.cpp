@@ -1,0 +1,146 @@
+// Hard cases of history arithmetic: each shows the naive form failing and ours holding. Rows whose tests are elsewhere:
+//
+//   constant n                         combination_test (ControlCancellingDenominatorFails), history_properties_test
+//   decay of the power sums            ledger_test (ControlConstantDecayOfPowerSumsIsCaught)
+//   decay 1 over 10^6 frames           ledger_test (AMillionFramesWithoutForgetting...)
+//   E[x^2] - m^2                       filter_test (InnovationsSurviveWhereSquaresCancel)
+//   variance floors, radiance scales   filter_test (IsInvariantToRadianceScale)
+//   not finite input                   filter_test (TreatsNotFiniteRadianceAsAFrameWithoutSamples), and below
+//   reset                              history_test, history_properties_test (AResetIsAFreshStart)
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "svgf/moments.h"
+#include "tests/schedule.h"
+#include "tests/synthetic.h"
+#include "twohistory/combination.h"
+#include "twohistory/mean.h"
+
+namespace {
+
+using twohistory::Forgetting;
+using twohistory::Ledger;
+using twohistory::Policy;
+using twohistory::Step;
+using twohistory::Weighting;
+
+const Policy kU{Weighting::frames, Forgetting::decay, 0.95}, kW{Weighting::samples, Forgetting::decay, 0.95};
+
+/// The nearest number with the 11 significant bits of half precision; infinite above its range.
+float roundToHalf(float x) {
+  int exponent = 0;
+  const float fraction = std::frexp(x, &exponent);
+  const float rounded = std::ldexp(std::nearbyint(std::ldexp(fraction, 11)), exponent - 11);
+  return std::abs(rounded) > 65504 ? std::copysign(std::numeric_limits<float>::infinity(), x) : rounded;
+}
+
+TEST(NoSamples, NaiveFormsDivideByZeroAndOursSkips) {
+  const float naive = 0.9025f * 10 + 1 / std::floor(0.5f);  // S_-1 <- b^2 S_-1 + 1 / n
+  EXPECT_FALSE(std::isfinite(naive));
+  Ledger<2> l;
+  for (int i = 0; i < 50; ++i) l = advance(l, {kU, kW}, 2.0f);
+  const Ledger<2> waited = advance(l, {kU, kW}, 0.0f);
+  EXPECT_EQ(waited.weight[0], 0.95f * l.weight[0]);
+  EXPECT_NEAR(waited.covariance(0, 0), l.covariance(0, 0), 1e-6f * l.covariance(0, 0));
+  EXPECT_NEAR(waited.age(0), l.age(0) + 1, 1e-4f);
+}
+
+TEST(ManySamples, OverflowHalfAndStayFiniteHere) {
+  Ledger<2> l;
+  for (int i = 0; i < 200; ++i) l = advance(l, {kU, kW}, 4096.0f);
+  EXPECT_FALSE(std::isfinite(roundToHalf(l.weight[1])));  // 81920 > 65504
+  EXPECT_TRUE(std::isfinite(l.weight[1]));
+  EXPECT_NEAR(roundToHalf(l.weight[1] / l.weight[0]), 4096, 1);  // the ratio fits
+}
+
+TEST(LongRuns, NaiveHalfAveragesStallAndFloatOnesArrive) {
+  float half = 0, full = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    half = roundToHalf(half + roundToHalf(0.05f * (1 - half)));
+    full += 0.05f * (1 - full);
+  }
+  EXPECT_GT(std::abs(half - 1), 2e-3f);  // stops where 0.05 (1 - x) is below half a unit in the last place
+  EXPECT_NEAR(full, 1, 1e-5f);
+}
+
+TEST(LongRuns, AMillionFramesOfEveryPolicyAgreeWithDouble) {
+  for (const Policy& p :
+       {kU, kW, Policy{Weighting::samples, Forgetting::decay, 0.999},
+        Policy{Weighting::samples, Forgetting::relativeCap, 20}, Policy{Weighting::frames, Forgetting::absoluteCap, 64},
+        Policy{Weighting::samples, Forgetting::decay, 0}, Policy{Weighting::frames, Forgetting::none, 0}}) {
+    Ledger<1> l;
+    Ledger<1, double> exact;
+    core::Rng rng(31, core::Pass::other, 0, 0);
+    const std::array<int, 7> counts{1, 8, 0, 2, 64, 1, 1};
+    for (int i = 0; i < 1'000'000; ++i) {
+      const int n = counts[rng.below(counts.size())];
+      l = advance(l, {p}, static_cast<float>(n));
+      exact = advance(exact, {p}, static_cast<double>(n));
+    }
+    const bool bounded = p.forgetting != Forgetting::none;  // without forgetting, float forgets what exceeds 2^22
+    EXPECT_NEAR(l.weight[0], exact.weight[0], bounded ? 1e-4 * exact.weight[0] : exact.weight[0]);
+    EXPECT_NEAR(l.covariance(0, 0), exact.covariance(0, 0), bounded ? 1e-3 * exact.covariance(0, 0) : 1);
+    EXPECT_TRUE(std::isfinite(l.age(0)));
+  }
+}
+
+TEST(UnequalTaps, NaiveMixingOfMeansClaimsTwentyTimesTooLittleVariance) {
+  // A tap with one sample and one with 160 frames' worth, half and half.
+  core::Image<Ledger<1>> before(2, 1);
+  before(0, 0) = advance(Ledger<1>{}, {kW}, 1.0f);
+  const Policy forever{Weighting::samples, Forgetting::none, 0};
+  for (int i = 0; i < 20; ++i) before(1, 0) = advance(before(1, 0), {forever}, 8.0f);
+  const twohistory::Taps taps{{0, 1, 0, 0}, {0.5f, 0.5f, 0, 0}};
+  const Ledger<1> mixed = gather<1, float>(taps, before);
+  const float naiveTrue = 0.25f * before(0, 0).covariance(0, 0) + 0.25f * before(1, 0).covariance(0, 0);
+  EXPECT_NEAR(naiveTrue, 0.25f, 0.01f);              // of the mean of means
+  EXPECT_NEAR(1 / mixed.weight[0], 0.0124f, 1e-3f);  // what the interpolated weight would claim: 20 times less
+  const twohistory::Taps b = twohistory::premultiplied<1>(taps, before, 0);
+  const float ours = b.b[0] * b.b[0] * before(0, 0).covariance(0, 0) + b.b[1] * b.b[1] * before(1, 0).covariance(0, 0);
+  EXPECT_LT(ours, 0.0065f);                 // of the premultiplied mix
+  EXPECT_GE(mixed.covariance(0, 0), ours);  // what we claim is no less
+  EXPECT_LT(mixed.covariance(0, 0), 2 * ours);
+}
+
+TEST(Infinities, NaiveTestForNaNAloneKeepsThemForEver) {
+  float naive = 1, ours = 1;
+  const twohistory::Mean<float> mean;
+  for (int i = 0; i < 100; ++i) {
+    const float x = i == 10 ? std::numeric_limits<float>::infinity() : 1;
+    if (!std::isnan(x)) naive += 0.05f * (x - naive);
+    Step step;
+    step.kept = 19, step.fresh = std::isfinite(x) ? 1.0f : 0.0f;  // as dropBadSamples decides
+    ours = mean.merge(ours, x, step);
+  }
+  EXPECT_FALSE(std::isfinite(naive));
+  EXPECT_EQ(ours, 1);
+}
+
+TEST(NegativeVariance, NaiveDifferenceOfSquaresGoesBelowZeroAndInnovationsDoNot) {
+  float first = 0, second = 0, lowest = 1;
+  svgf::Moments m;
+  const svgf::MomentsMerge merge;
+  core::Rng rng(32, core::Pass::other, 0, 0);
+  for (int i = 0; i < 1000; ++i) {
+    const float x = 1000 + 0.05f * (rng.uniform() - 0.5f);
+    first += 0.05f * (x - first), second += 0.05f * (x * x - second);
+    if (i > 200) lowest = std::min(lowest, second - first * first);
+    Step step;
+    step.kept = i > 0 ? 19.0f : 0.0f, step.fresh = 1, step.samples = 1, step.varianceBefore = 0.0256f;
+    m = merge.merge(m, x, step);
+  }
+  EXPECT_LT(lowest, 0);
+  EXPECT_NEAR(m.sampleVariance, 0.05f * 0.05f / 12, 0.5f * 0.05f * 0.05f / 12);
+}
+
+TEST(Denormals, LeaveBlendsFiniteAndInRange) {
+  for (const float scale : {1e-38f, 1e-42f, 1e-45f}) {
+    const twohistory::PairCovariance<float> c{3 * scale, 2 * scale, scale};
+    const float p = leastVarianceWeight(c);
+    EXPECT_TRUE(p >= 0 && p <= 1);
+    EXPECT_TRUE(std::isfinite(lagWeight(c, 19.0f, 4.0f, scale)));
+  }
+}
+
+}  // namespace
