@@ -1,0 +1,200 @@
+// Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
+// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion. The control is the rule for independent taps
+// (b^2). Relative standard error of a ratio: below 0.3 % (printed ratios are means over 1,500 pixels and 400
+// sequences).
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include "core/foveation.h"
+#include "core/gaze.h"
+#include "core/random.h"
+#include "experiments/lab/motion.h"
+#include "twohistory/combination.h"
+#include "twohistory/mean.h"
+#include "twohistory/reprojection.h"
+
+namespace {
+
+using core::vec2;
+using twohistory::Ledger;
+using twohistory::Policy;
+using twohistory::Taps;
+using twohistory::Weighting;
+
+constexpr int kWidth = 64, kHeight = 48, kFrames = 60, kSequences = 400, kMargin = 8, kHistories = 3;
+const twohistory::Policies<kHistories> kPolicies{Policy{Weighting::frames, twohistory::Forgetting::decay, 0.95},
+                                                 Policy{Weighting::samples, twohistory::Forgetting::decay, 0.95},
+                                                 Policy{Weighting::samples, twohistory::Forgetting::decay, 0.8}};
+
+struct Motion {
+  const char* name;
+  vec2 step;       ///< pixels a frame
+  float wander;    ///< and so much at random
+  float rotation;  ///< degrees a frame
+};
+
+/// Taps of a frame: where every pixel was, bilinear, inside the image.
+void fillTaps(const Motion& m, int frame, core::Image<Taps>& taps) {
+  core::Rng rng(9, core::Pass::lab, 0, static_cast<std::uint32_t>(frame));
+  const vec2 moved = m.step + m.wander * (2.0f * rng.uniform2() - 1.0f);
+  const experiments::lab::View turn({0, 0, m.rotation}, 1);
+  core::forEachPixel(kWidth, kHeight, [&](int x, int y) {
+    const vec2 centre(0.5f * kWidth, 0.5f * kHeight), p = vec2(x, y) + 0.5f - centre;
+    const vec2 q = turn.toImage(p) + centre - moved - 0.5f;
+    const int i = static_cast<int>(std::floor(q.x)), j = static_cast<int>(std::floor(q.y));
+    const vec2 f = q - vec2(i, j);
+    Taps t;
+    for (int k = 0; k < 4; ++k) {
+      const int u = i + k % 2, v = j + k / 2;
+      if (u < 0 || v < 0 || u >= kWidth || v >= kHeight) continue;
+      t.pixel[k] = v * kWidth + u;
+      t.b[k] = (k % 2 ? f.x : 1 - f.x) * (k / 2 ? f.y : 1 - f.y);
+    }
+    const float sum = t.b[0] + t.b[1] + t.b[2] + t.b[3];
+    if (sum > 0)
+      for (float& b : t.b) b /= sum;
+    taps(x, y) = t;
+  });
+}
+
+/// One schedule's taps and counts for all frames, and the ledger after each.
+struct Course {
+  std::vector<core::Image<Taps>> taps;
+  std::vector<core::Image<float>> counts;
+  core::Image<Ledger<kHistories>> ledger, independent;  ///< after the last frame; with b^1.5, and with b^2
+  core::Image<std::uint8_t> fovea;
+
+  explicit Course(const Motion& motion) : fovea(kWidth, kHeight) {
+    const core::Foveation foveation({});
+    core::Image<Ledger<kHistories>> before(kWidth, kHeight), now(kWidth, kHeight), b2Before(before), b2(before);
+    for (int f = 0; f < kFrames; ++f) {
+      taps.emplace_back(kWidth, kHeight), counts.emplace_back(kWidth, kHeight);
+      if (f > 0) fillTaps(motion, f, taps.back());
+      foveation.place(core::gazeAt({}, f / 30.0, kWidth, kHeight), 1, static_cast<std::uint32_t>(f), counts.back(),
+                      fovea);
+      for (int i = 0; i < kWidth * kHeight; ++i) {
+        const Taps& t = taps[f].data()[i];
+        const float n = counts[f].data()[i];
+        now.data()[i] = advance(twohistory::gather<kHistories, float>(t, before), kPolicies, n);
+        b2.data()[i] = advance(gatherIndependent(t, b2Before), kPolicies, n);
+      }
+      std::swap(before, now), std::swap(b2Before, b2);
+    }
+    ledger = before, independent = b2Before;
+  }
+
+  /// The control: power sums as if the taps' histories were independent.
+  static Ledger<kHistories> gatherIndependent(const Taps& t, const core::Image<Ledger<kHistories>>& before) {
+    Ledger<kHistories> sum = twohistory::gather<kHistories, float>(t, before);
+    sum.powerSums.fill(0);
+    for (int k = 0; k < 4; ++k)
+      for (std::size_t i = 0; i < sum.powerSums.size(); ++i)
+        sum.powerSums[i] += t.b[k] * t.b[k] * before.data()[t.pixel[k]].powerSums[i];
+    return sum;
+  }
+};
+
+/// Weights whose variance is compared: each history alone, and p_opt of the first two.
+std::array<float, kHistories> combination(const Ledger<kHistories>& l, int which) {
+  std::array<float, kHistories> w{};
+  if (which < kHistories) {
+    w[which] = 1;
+  } else {
+    w[0] = leastVarianceWeight(twohistory::pairOf(l, 0, 1));
+    w[1] = 1 - w[0];
+  }
+  return w;
+}
+
+double predicted(const Ledger<kHistories>& l, const std::array<float, kHistories>& w) {
+  double sum = 0;
+  for (int g = 0; g < kHistories; ++g)
+    for (int h = 0; h < kHistories; ++h) sum += double(w[g]) * double(w[h]) * double(l.covariance(g, h));
+  return sum;
+}
+
+/// Histories of one sequence of unit-variance samples.
+std::array<core::Image<float>, kHistories> simulate(const Course& c, std::uint64_t seed) {
+  std::array<core::Image<float>, kHistories> before, now;
+  for (int j = 0; j < kHistories; ++j) before[j] = now[j] = core::Image<float>(kWidth, kHeight);
+  core::Image<Ledger<kHistories>> ledger(kWidth, kHeight), next(kWidth, kHeight);
+  core::Image<float> x(kWidth, kHeight);
+  for (int f = 0; f < kFrames; ++f) {
+    for (int i = 0; i < kWidth * kHeight; ++i) {
+      core::Rng rng(seed, core::Pass::lab, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(f));
+      x.data()[i] = std::sqrt(12 / c.counts[f].data()[i]) * (rng.uniform() - 0.5f);
+    }
+    std::array<core::In<float>, kHistories> in{before[0], before[1], before[2]};
+    std::array<core::ImageView<float>, kHistories> out{now[0], now[1], now[2]};
+    twohistory::accumulate<kHistories>(c.taps[f].view(), c.counts[f].view(), kPolicies, ledger.view(), next.view(),
+                                       twohistory::Mean<float>{}, in, x.view(), out);
+    std::swap(before, now), std::swap(ledger, next);
+  }
+  return before;
+}
+
+/// Mean true over mean predicted variance; [combination][region: all, fovea, periphery], for both mixing rules.
+struct Calibration {
+  double ratio[kHistories + 1][3], control[kHistories + 1][3];
+};
+
+Calibration calibrate(const Motion& motion) {
+  const Course course(motion);
+  std::vector<std::array<core::Image<float>, kHistories>> all(kSequences);
+  core::forEachIndex(kSequences, [&](std::size_t s) { all[s] = simulate(course, s + 1); });
+  Calibration result;
+  for (int which = 0; which <= kHistories; ++which) {
+    double truth[3]{}, claim[3]{}, control[3]{};
+    for (int y = kMargin; y < kHeight - kMargin; ++y)
+      for (int x = kMargin; x < kWidth - kMargin; ++x) {
+        const auto w = combination(course.ledger(x, y), which);
+        double square = 0;
+        for (const auto& h : all) {
+          double value = 0;
+          for (int j = 0; j < kHistories; ++j) value += double(w[j]) * double(h[j](x, y));
+          square += value * value / kSequences;
+        }
+        for (const int region : {0, course.fovea(x, y) ? 1 : 2}) {
+          truth[region] += square;
+          claim[region] += predicted(course.ledger(x, y), w);
+          control[region] += predicted(course.independent(x, y), w);
+        }
+      }
+    for (int r = 0; r < 3; ++r)
+      result.ratio[which][r] = truth[r] / claim[r], result.control[which][r] = truth[r] / control[r];
+  }
+  return result;
+}
+
+constexpr const char* kCombination[] = {"U", "W", "F", "p_opt(U, W)"};
+
+void print(const Motion& m, const Calibration& c) {
+  for (int k = 0; k <= kHistories; ++k)
+    fmt::print("| {} | {} | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} / {:.2f} |\n", m.name, kCombination[k],
+               c.ratio[k][0], c.ratio[k][1], c.ratio[k][2], c.control[k][0], c.control[k][1], c.control[k][2]);
+}
+
+void expectWithin(const Motion& m, double low, double high) {
+  const Calibration c = calibrate(m);
+  print(m, c);
+  for (int k = 0; k <= kHistories; ++k)
+    for (int r = 0; r < 3; ++r) {
+      EXPECT_GT(c.ratio[k][r], low) << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(c.ratio[k][r], high) << m.name << ", " << kCombination[k] << ", region " << r;
+    }
+}
+
+TEST(PredictedVariance, OfAStillCameraIsWithinTwoPercent) { expectWithin({"still", vec2(0), 0, 0}, 0.98, 1.02); }
+TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) { expectWithin({"1, 0", vec2(1, 0), 0, 0}, 0.98, 1.02); }
+TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
+  for (const Motion& m : {Motion{"0.5, 0.5", vec2(0.5f), 0, 0}, Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0},
+                          Motion{"0.1, 0", vec2(0.1f, 0), 0, 0}, Motion{"random", vec2(0), 1, 0},
+                          Motion{"turn 0.5 degrees", vec2(0), 0, 0.5f}})
+    expectWithin(m, 0.8, 1.25);
+}
+TEST(PredictedVariance, ControlIndependentTapsClaimTooLittle) {
+  const Calibration c = calibrate({"random", vec2(0), 1, 0});
+  EXPECT_GT(c.control[0][0], 1.25);
+}
+
+}  // namespace
