@@ -34,8 +34,13 @@ Variant lag(const char* name, std::vector<Policy> histories, float lowest, float
   return v;
 }
 
+std::vector<Variant>& extensions() {
+  static std::vector<Variant> all;
+  return all;
+}
+
 /// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one.
-std::vector<Variant> library() {
+std::vector<Variant> ownLibrary() {
   const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
   Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
   all.blend.mode = BlendMode::lagAll;
@@ -61,7 +66,15 @@ std::vector<Variant> library() {
           make("oracle", {u, w}, BlendMode::oracle)};
 }
 
+std::vector<Variant> library() {
+  std::vector<Variant> all = ownLibrary();
+  all.insert(all.end(), extensions().begin(), extensions().end());
+  return all;
+}
+
 }  // namespace
+
+Extension::Extension(Variant variant) { extensions().push_back(std::move(variant)); }
 
 std::vector<std::string> variantNames() {
   std::vector<std::string> names;
@@ -90,10 +103,15 @@ void requireConsistent(const Variant& v) {
   if (v.histories.empty() || v.histories.size() > 3)
     fail(std::to_string(v.histories.size()) + " histories", "give one, two or three");
   for (const Policy& p : v.histories)
+    if (p.weighting == Weighting::custom && !p.weight)
+      fail("a custom weighting without a function", "start from an extension's variant; see docs/extending.md");
+  if (v.blend.mode == BlendMode::custom && !v.blend.custom)
+    fail("a custom blend without a function", "start from an extension's variant; see docs/extending.md");
+  for (const Policy& p : v.histories)
     if (p.forgetting == Forgetting::decay && p.amount > 1)
       fail("a decay of " + std::to_string(p.amount), "a decay lies in [0, 1]");
   const int count = static_cast<int>(v.histories.size());
-  const bool usesPair = v.blend.mode != BlendMode::first;
+  const bool usesPair = v.blend.mode != BlendMode::first && v.blend.mode != BlendMode::custom;
   if (v.blend.pair[0] >= count || (usesPair && v.blend.pair[1] >= count))
     fail("its blend names a history that it does not have", "blend.first and blend.second count histories from 0");
   if (usesPair && v.blend.pair[0] == v.blend.pair[1]) fail("it blends a history with itself", "name two histories");

@@ -25,8 +25,15 @@ void describe(V& v, Variant& p) {
   v("filter", p.filter, "the filter around them");
 }
 
+/// Adds a variant to the library while the program starts: one static object in a file of experiments/extensions. See
+/// docs/extending.md.
+struct Extension {
+  explicit Extension(Variant variant);
+};
+
 /// The variants of the field and of this project by name: none, unweighted, unweighted-96, unweighted-98, weighted,
-/// published, optimal, seed, seed-slide, consistent, lag-uw, lag-wf, lag-safe, lag-uwf, lag-checked, oracle.
+/// published, optimal, seed, seed-slide, consistent, lag-uw, lag-wf, lag-safe, lag-uwf, lag-checked, oracle; then those
+/// of extensions.
 std::vector<std::string> variantNames();
 /// Throws core::UsageError, naming the known ones, for any other name.
 Variant variantByName(const std::string& name);

@@ -38,7 +38,7 @@ Reservoir drawPixel(const RestirParameters& p, const Frame& frame, int x, int y)
       candidates.addBatch(rng, builder);
     }
   }
-  const float confidence = twohistory::freshWeight(p.temporal.policy.weighting, frame.samples(x, y));
+  const float confidence = twohistory::freshWeight(p.temporal.policy, frame.samples(x, y));
   return builder.finish(confidence, frame.now.frame);
 }
 

@@ -18,7 +18,7 @@ struct Innovations {
   Innovation operator()(int x, int y) const {
     const float n = state.samples(x, y);
     const Ledger<K>& ledger = state.ledger[state.now](x, y);
-    const float fresh = twohistory::freshWeight(policy.weighting, n), kept = ledger.weight[0] - fresh;
+    const float fresh = twohistory::freshWeight(policy, n), kept = ledger.weight[0] - fresh;
     const float sample = check.empty() ? core::luminance(radiance.load(x, y)) : check(x, y);
     // A history that is nearly all fresh says nothing of what was before it.
     if (!(n > 0) || !(sample >= 0) || !(kept > 0.05f * ledger.weight[0])) return {};

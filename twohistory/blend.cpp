@@ -84,6 +84,20 @@ float oracleWeight(const Histories<K>& h, const BlendParameters& p, int x, int y
   return std::clamp(dot(h.target.load(x, y) - second, step) / length2, 0.0f, 1.0f);
 }
 
+template <int K>
+Weights<K> customWeights(const Histories<K>& h, const BlendParameters& p, int x, int y) {
+  const Ledger<K>& ledger = h.ledger(x, y);
+  PixelHistories pixel{K, {}, {}, {}, {}, h.sampleVariance(x, y), h.samples(x, y)};
+  for (int j = 0; j < K; ++j) {
+    pixel.colour[j] = h.colour[j].load(x, y), pixel.weight[j] = ledger.weight[j], pixel.age[j] = ledger.age(j);
+    for (int k = 0; k < K; ++k) pixel.covariance[j][k] = ledger.covariance(j, k);
+  }
+  const std::array<float, 3> weights = p.custom(pixel);
+  Weights<K> result;
+  std::copy_n(weights.begin(), K, result.begin());
+  return result;
+}
+
 /// Blends whose weight needs only the pixel itself.
 template <int K>
 float localWeight(const Histories<K>& h, const BlendParameters& p, int x, int y) {
@@ -176,6 +190,8 @@ void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameter
     only[p.pair[0]] = 1;
     return core::forEachPixel(width, height, [&](int x, int y) { sink.write(x, y, only); });
   }
+  if (p.mode == BlendMode::custom)
+    return core::forEachPixel(width, height, [&](int x, int y) { sink.write(x, y, customWeights(h, p, x, y)); });
   CHECK_LT(p.pair[1], K);
   if (p.mode == BlendMode::lag || p.mode == BlendMode::lagAll || p.mode == BlendMode::consistent)
     return blendByDrift(h, guide, p, state, sink);

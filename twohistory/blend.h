@@ -20,12 +20,27 @@ enum class BlendMode {
   consistent,  ///< one closed form in place of p and q
   lag,         ///< lag regression: least estimated true error; the flagship
   lagAll,      ///< lag regression over all K histories; pair[1] is the freshest, which the others are compared with
+  custom,      ///< BlendParameters::custom
   oracle,      ///< best p in [0, 1] against the reference; p_opt in frames without one
 };
 
 /// predicted: from the power sums. safe: the largest of that and two measured ones (spread in the window, spread of
 /// four quadrant means); lagAll then also scales pixel noise by its measured over its predicted variance.
 enum class NoiseEstimate { predicted, safe };
+
+/// What a blend of one's own may read of one pixel with `count` histories.
+struct PixelHistories {
+  int count = 0;
+  std::array<core::vec3, 3> colour{};                ///< demodulated radiance after the first filter level
+  std::array<float, 3> weight{};                     ///< W
+  std::array<float, 3> age{};                        ///< mean age in frames
+  std::array<std::array<float, 3>, 3> covariance{};  ///< in units of sampleVariance
+  float sampleVariance = 0;                          ///< s2: luminance variance of one sample
+  float samples = 0;                                 ///< n of this frame
+};
+
+/// Weights of the histories; they should sum to 1.
+using BlendFunction = std::array<float, 3> (*)(const PixelHistories&);
 
 struct BlendParameters {
   BlendMode mode = BlendMode::first;
@@ -35,6 +50,7 @@ struct BlendParameters {
   NoiseEstimate noise = NoiseEstimate::predicted;
   core::EdgeParameters edges;
   ValidationParameters validation;
+  BlendFunction custom = nullptr;  ///< of mode custom; only an extension can set it
 };
 
 template <class V>
@@ -48,6 +64,7 @@ void describe(V& v, BlendParameters& p) {
             {"consistent", BlendMode::consistent},
             {"lag", BlendMode::lag},
             {"lagAll", BlendMode::lagAll},
+            {"custom", BlendMode::custom},
             {"oracle", BlendMode::oracle}},
            "how the histories become one image");
   v("first", p.pair[0], "index of the history that p weighs", 0.0, 2.0);

@@ -60,7 +60,7 @@ template <int K, class Real>
 Advance<K, Real> advanceOf(const Ledger<K, Real>& gathered, const Policies<K>& policies, Real n) {
   Advance<K, Real> a;
   for (int j = 0; j < K; ++j) {
-    a.fresh[j] = freshWeight(policies[j].weighting, n);
+    a.fresh[j] = freshWeight(policies[j], n);
     a.factor[j] = forgetFactor(policies[j].forgetting, policies[j].amount, gathered.weight[j], a.fresh[j]);
   }
   return a;

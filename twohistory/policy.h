@@ -6,8 +6,11 @@
 
 namespace twohistory {
 
-/// weight(n) = n^e, 0 where n = 0. frames: e = 0 ("unweighted"), samples: e = 1 ("weighted").
-enum class Weighting { frames, samples };
+/// weight(n) = n^e, 0 where n = 0. frames: e = 0 ("unweighted"), samples: e = 1 ("weighted"). custom: Policy::weight.
+enum class Weighting { frames, samples, custom };
+
+/// Weight of n > 0 samples, for weightings of one's own; positive and finite. It must not look at what was sampled.
+using WeightFunction = double (*)(double n);
 
 /// decay: weight times amount every frame. relativeCap: weight at most amount times the fresh weight (ReSTIR's 20 M).
 /// absoluteCap: weight at most amount. none: everything is kept.
@@ -18,12 +21,14 @@ struct Policy {
   Weighting weighting = Weighting::frames;
   Forgetting forgetting = Forgetting::decay;
   double amount = 0.95;
+  WeightFunction weight = nullptr;  ///< of a custom weighting; only an extension can set it
 };
 
 template <class V>
 void describe(V& v, Policy& p) {
-  v.choice("weighting", p.weighting, {{"frames", Weighting::frames}, {"samples", Weighting::samples}},
-           "weight of a fresh value: 1, or its sample count");
+  v.choice("weighting", p.weighting,
+           {{"frames", Weighting::frames}, {"samples", Weighting::samples}, {"custom", Weighting::custom}},
+           "weight of a fresh value: 1, its sample count, or what an extension says");
   v.choice("forgetting", p.forgetting,
            {{"decay", Forgetting::decay},
             {"relativeCap", Forgetting::relativeCap},
@@ -43,6 +48,12 @@ template <class Real>
 Real freshWeight(Weighting weighting, Real n) {
   if (!(n > 0)) return 0;
   return weighting == Weighting::samples ? n : Real(1);
+}
+
+template <class Real>
+Real freshWeight(const Policy& policy, Real n) {
+  if (policy.weighting != Weighting::custom) return freshWeight(policy.weighting, n);
+  return n > 0 ? static_cast<Real>(policy.weight(static_cast<double>(n))) : Real(0);
 }
 
 /// Factor in [0, 1] by which a history of weight w shrinks before a fresh weight arrives. Caps do not act where
