@@ -65,23 +65,19 @@ double zOfCorrelation(const std::vector<Sums>& all, double Sums::*a, double Sums
   return std::atanh(r) * std::sqrt(kSequences - 3.0);
 }
 
-class CheckSamples : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    world_ = new tests::World(tests::makeWorld({}, true), kFrames);
-    all_ = new std::vector<Sums>(renderAll(*world_));
-  }
-  static void TearDownTestSuite() { delete world_, delete all_; }
-  static tests::World* world_;
-  static std::vector<Sums>* all_;
-};
-tests::World* CheckSamples::world_;
-std::vector<Sums>* CheckSamples::all_;
+const tests::World& world() {
+  static const tests::World w(tests::makeWorld({}, true), kFrames);
+  return w;
+}
+const std::vector<Sums>& sequences() {
+  static const std::vector<Sums> all = renderAll(world());
+  return all;
+}
 
-TEST_F(CheckSamples, AreUnbiased) {
-  const tests::Estimate reference = tests::reference(*world_, 16, 512);
+TEST(CheckSamples, AreUnbiased) {
+  const tests::Estimate reference = tests::reference(world(), 16, 512);
   core::RunningMoments check, half;
-  for (const Sums& s : *all_) check.add(s.check), half.add(0.95 * s.check);
+  for (const Sums& s : sequences()) check.add(s.check), half.add(0.95 * s.check);
   const auto z = [&](const core::RunningMoments& m) {
     return (m.mean() - reference.total.mean()) / std::sqrt(m.meanVariance() + reference.total.meanVariance());
   };
@@ -89,17 +85,17 @@ TEST_F(CheckSamples, AreUnbiased) {
   EXPECT_GT(std::abs(z(half)), kLargestZ);  // control: 5 % of the light lost
 }
 
-TEST_F(CheckSamples, DependOnNoEarlierFrameAsReusedSamplesDo) {
-  EXPECT_LT(std::abs(zOfCorrelation(*all_, &Sums::check, &Sums::before)), kLargestZ);
-  EXPECT_GT(zOfCorrelation(*all_, &Sums::reused, &Sums::before), kLargestZ);  // control: reuse correlates frames
+TEST(CheckSamples, DependOnNoEarlierFrameAsReusedSamplesDo) {
+  EXPECT_LT(std::abs(zOfCorrelation(sequences(), &Sums::check, &Sums::before)), kLargestZ);
+  EXPECT_GT(zOfCorrelation(sequences(), &Sums::reused, &Sums::before), kLargestZ);  // control: reuse correlates frames
 }
 
-TEST_F(CheckSamples, AreOneInABlockOfFourAndNoneWithoutSamples) {
+TEST(CheckSamples, AreOneInABlockOfFourAndNoneWithoutSamples) {
   restir::RestirState state(kWidth, kHeight);
   core::Image<float> samples(kWidth, kHeight, 1.0f), check(kWidth, kHeight);
   for (int x = 0; x < kWidth / 2; ++x)
     for (int y = 0; y < kHeight; ++y) samples(x, y) = 0;
-  const restir::Frame frame = world_->frame(0, samples, 1);
+  const restir::Frame frame = world().frame(0, samples, 1);
   restir::drawCandidates({}, frame, state);
   restir::shadeCheckSamples({}, frame, state, check);
   int all = 0;
