@@ -58,7 +58,8 @@ WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, c
     if (measuredNoise) e.noise = std::max(e.noise, cappedRatio(row.spread(k, i), predicted));  // [blend kappa]
   }
   if (!(gaps > 1e-3f)) return e;
-  const float own = slope / gaps * std::min(ledger.age(a.reference), 0.5f * longest);
+  const float age = ledger.age(a.reference), reach = 0.5f * longest * std::min(1.0f, cappedRatio(longest, age));
+  const float own = slope / gaps * std::min(age, reach);
   for (float& b : e.bias) b += own;  // [blend bias]
   return e;
 }
