@@ -37,10 +37,12 @@ struct WindowEvidence {
 };
 
 /// [blend bias] b_j = D_j + b_r with D_j the mean difference from the reference, shrunk by its noise, and
-/// b_r = G min(a_r, half the longest gap), G the slope of all D_j against the gaps of age. Extrapolating further than
-/// ages reach is not supported by what was seen: a pixel without samples grows old without learning anything. [blend
-/// kappa] kappa = max_j spread_j / (s2 Var(X_j - X_r)): noise that reuse or sharing correlates, so that histories
-/// average less of it away than the power sums say.
+/// b_r = G min(a_r, L/2 min(1, L / a_r)), G the slope of all D_j against the gaps of age, L the longest gap.
+/// Extrapolating further than ages reach is not supported by what was seen: a pixel without samples grows old without
+/// learning anything.
+///
+/// [blend kappa] kappa = max_j spread_j / (s2 Var(X_j - X_r)): noise that reuse or sharing correlates, so that
+/// histories average less of it away than the power sums say.
 template <int K>
 WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, const DriftRow& row, int i,
                                  bool measuredNoise) {
