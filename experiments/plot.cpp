@@ -81,6 +81,15 @@ std::string polyline(const Line& line, const Axis& x, const Axis& y, bool logari
                      escaped(line.label), path, marks);
 }
 
+/// The point of a line that has only one, with its name.
+std::string labelledPoint(const Line& line, const Axis& x, const Axis& y) {
+  const double px = x.at(line.x.front()), py = y.at(line.y.front());
+  const bool left = px > 0.75 * kWidth;
+  return fmt::format("<g class=\"line {}\"><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/></g>\n",
+                     seriesClass(line.style), px, py) +
+         text(left ? px - 7 : px + 7, py + 4, left ? "end" : "start", line.label);
+}
+
 std::string frameOf(const LinePlot& plot, const Axis& x, const Axis& y) {
   std::string svg = text(kLeft, 18, "start", plot.title, " class=\"heading\"");
   for (const double tick : y.ticks()) {
@@ -125,7 +134,9 @@ std::string svgLinePlot(const LinePlot& plot) {
   const Axis x(xs.low, xs.high, kLeft, kWidth - kRight, false);
   const Axis y(ys.low, ys.high, kHeight - kBottom, kTop, plot.logarithmic);
   std::string svg = open(kWidth, kHeight, plot.title + ": " + plot.yLabel) + frameOf(plot, x, y);
-  for (const Line& line : plot.lines) svg += polyline(line, x, y, plot.logarithmic);
+  for (const Line& line : plot.lines)
+    svg += plot.labelled && drawable(line, 0, plot.logarithmic) ? labelledPoint(line, x, y)
+                                                                : polyline(line, x, y, plot.logarithmic);
   return svg + "</svg>\n";
 }
 

@@ -17,6 +17,7 @@ struct LinePlot {
   std::string title, xLabel, yLabel;
   bool logarithmic = true;  ///< y axis
   std::vector<Line> lines;
+  bool labelled = false;  ///< lines of one point each: their labels stand beside them
 };
 
 /// An empty string if there is no point to draw.

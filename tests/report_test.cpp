@@ -111,6 +111,7 @@ TEST(Plot, LeavesGapsWhereALogarithmHasNoValue) {
   EXPECT_EQ(svgLinePlot({"t", "x", "y", true, {{"a", 0, {0}, {-1}}}}), "");
   EXPECT_EQ(count(svgLinePlot({"t", "x", "y", true, {{"a", 0, {5}, {2}}}}), "<circle"), 1u);  // a single point
   EXPECT_EQ(count(svgLinePlot({"t", "x", "y", false, {{"a", 0, {5}, {0}}}}), "nan"), 0u);
+  EXPECT_EQ(count(svgLinePlot({"t", "x", "y", false, {{"point a", 0, {5}, {0}}}, true}), ">point a<"), 1u);
 }
 
 TEST(Picture, ToneMapKeepsOrderAndShowsWhatIsNotFinite) {

@@ -103,10 +103,10 @@ std::string htmlOf(const Cells& cells) {
 /// What is shown, in order.
 std::vector<Cells> allTables(const Results& results) {
   std::vector<Cells> tables;
+  for (const char* region : {"full", "fovea"}) tables.push_back(standingsTable(results, region));
   for (const char* region : {"full", "fovea", "periphery", "recently_foveal"})
     tables.push_back(tableOf(results, "MSE", region));
   for (const char* region : {"fovea", "recently_foveal"}) tables.push_back(tableOf(results, "border_step", region));
-  for (const char* region : {"full", "fovea"}) tables.push_back(standingsTable(results, region));
   return tables;
 }
 
@@ -118,14 +118,13 @@ std::string frontier(const Results& results) {
                 false,
                 {}};
   const std::vector<Standing> full = standings(results, "full"), fovea = standings(results, "fovea");
-  std::vector<std::string> names;
+  plot.labelled = true;
   for (std::size_t i = 0; i < full.size(); ++i) {
-    names.push_back(full[i].variant);
     const double worst = i < fovea.size() ? std::max(full[i].worst, fovea[i].worst) : full[i].worst;
     plot.lines.push_back({full[i].variant, i, {std::min(worst, 3.0)}, {full[i].toSeed}});
   }
   const std::string svg = svgLinePlot(plot);
-  return svg.empty() ? "" : "<p>Worst cases above 3 are drawn at 3.</p>" + htmlLegend(names) + svg;
+  return svg.empty() ? "" : "<p>Worst cases above 3 are drawn at 3.</p>" + svg;
 }
 
 }  // namespace

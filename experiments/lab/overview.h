@@ -19,7 +19,7 @@ struct Standing {
 /// Every variant but the baseline, in the order of the results. region: as in results.
 std::vector<Standing> standings(const Results& results, const std::string& region);
 
-/// Tables for a terminal: full / fovea over the baseline by case, border steps, standings.
+/// Tables for a terminal: standings, error over the baseline's by case and region, border steps.
 std::string overviewText(const Results& results);
 /// The same for the report: tables, and the frontier between boldness and safety as a plot.
 std::string overviewHtml(const Results& results);
