@@ -48,6 +48,7 @@ class Image {
   int height() const { return height_; }
   bool empty() const { return pixels_.empty(); }
   std::size_t size() const { return pixels_.size(); }
+  std::size_t bytes() const { return size() * sizeof(T); }
   T* data() { return pixels_.data(); }
   const T* data() const { return pixels_.data(); }
   T& operator()(int x, int y) { return pixels_[index(x, y)]; }
@@ -68,7 +69,8 @@ class Image {
   std::vector<T> pixels_;
 };
 
-/// A colour image as three planes, for kernels that stream rows. Const-ness as for ImageView.
+/// A colour image as three planes of T (a type that converts to and from float), for kernels that stream rows.
+/// Const-ness as for ImageView.
 template <class T>
 struct PlanesView {
   std::array<ImageView<T>, 3> plane;
@@ -85,22 +87,26 @@ struct PlanesView {
 };
 
 /// Owner of three planes of one size.
-class Planes {
+template <class T>
+class PlanesOf {
  public:
-  Planes() = default;
-  Planes(int width, int height, float value = 0) {
-    for (auto& p : planes_) p = Image<float>(width, height, value);
+  PlanesOf() = default;
+  PlanesOf(int width, int height, T value = 0) {
+    for (auto& p : planes_) p = Image<T>(width, height, value);
   }
   int width() const { return planes_[0].width(); }
   int height() const { return planes_[0].height(); }
   bool empty() const { return planes_[0].empty(); }
-  PlanesView<float> view() { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
-  PlanesView<const float> view() const { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
-  operator PlanesView<float>() { return view(); }
-  operator PlanesView<const float>() const { return view(); }
+  std::size_t bytes() const { return 3 * planes_[0].bytes(); }
+  PlanesView<T> view() { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
+  PlanesView<const T> view() const { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
+  operator PlanesView<T>() { return view(); }
+  operator PlanesView<const T>() const { return view(); }
 
  private:
-  std::array<Image<float>, 3> planes_;
+  std::array<Image<T>, 3> planes_;
 };
+
+using Planes = PlanesOf<float>;
 
 }  // namespace core

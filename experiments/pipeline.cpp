@@ -38,7 +38,8 @@ std::array<twohistory::Policy, K> policiesOf(const Variant& v) {
 template <int K>
 twohistory::Histories<K> historiesOf(const svgf::FilterState<K>& s, const Planes& gradient,
                                      PlanesView<const float> target) {
-  return {s.historyViews(), s.ledger[s.now], s.sampleVariance, s.samples, s.filteredVariance, gradient, target};
+  return {s.history.views(),  s.ledger[s.now], s.sampleVariance, s.samples,
+          s.filteredVariance, gradient,        target,           s.twins.empty() ? nullptr : &s.twins};
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ namespace {
 
 template <int K>
 void filterFrame(const Shaded& frame, const Variant& v, PlanesView<const float> target, svgf::FilterState<K>& s,
-                 twohistory::GradientState& gradient, twohistory::BlendState& blending, svgf::LevelBuffers& levels,
+                 twohistory::GradientState& gradient, twohistory::Validation& validation, svgf::LevelBuffers& levels,
                  core::ImageView<float> weight, PassTimes& t, PlanesView<float> out) {
   s.swapFrames();
   timed(t, "accumulate", [&] { svgf::accumulate<K>(v.filter, policiesOf<K>(v), frame.taps, frame.radiance, s); });
@@ -111,19 +112,18 @@ void filterFrame(const Shaded& frame, const Variant& v, PlanesView<const float> 
       gradient.fit(frame.guide.width(), frame.guide.height());
       const int first = v.blend.pair[0];
       twohistory::updateGradient<K>(gradientParameters(v), frame.guide, frame.taps, s.samples, s.ledger[1 - s.now],
-                                    first, s.history[first], frame.radiance, gradient);
+                                    first, s.history.views()[first], frame.radiance, gradient);
     });
   }
   if (v.blend.validation.on)
     timed(t, "check", [&] {
-      svgf::checkBlend<K>(v.blend.validation, policiesOf<K>(v), frame.taps, frame.radiance, frame.check, s,
-                          blending.validation);
+      svgf::checkBlend<K>(v.blend.validation, policiesOf<K>(v), frame.taps, frame.radiance, frame.check, s, validation);
     });
   timed(t, "variance", [&] { svgf::estimateVariance(v.filter, frame.guide, s); });
   timed(t, "filter (first level)", [&] { svgf::filterHistories(v.filter, frame.guide, s); });
   timed(t, "blend", [&] {
-    twohistory::blend<K>(historiesOf(s, gradient.gradient, target), frame.guide, v.blend, blending, levels.colour[0],
-                         levels.variance[0], weight);
+    twohistory::blend<K>(historiesOf(s, gradient.gradient, target), frame.guide, v.blend, validation, levels.free(),
+                         {levels.colour[0], levels.variance[0], weight});
   });
   timed(t, "filter (further levels)", [&] {
     const int last = svgf::filterFurther(v.filter, frame.guide, levels);
@@ -144,12 +144,17 @@ std::variant<svgf::FilterState<1>, svgf::FilterState<2>, svgf::FilterState<3>> m
 FilterState::FilterState(const Variant& variant, int width, int height)
     : histories_(makeHistories(variant, width, height)), levels_(width, height), weight_(width, height) {}
 
+std::size_t FilterState::bytes() const {
+  const std::size_t histories = std::visit([](const auto& s) { return s.bytes(); }, histories_);
+  return histories + gradient_.bytes() + validation_.bytes() + levels_.bytes() + weight_.bytes();
+}
+
 void filter(const Shaded& frame, const Variant& variant, PlanesView<const float> target, FilterState& state,
             PlanesView<float> out) {
   std::visit(
       [&](auto& s) {
         state.badPixels_ += svgf::dropBadSamples(frame.radiance, frame.samples, s.samples);
-        filterFrame(frame, variant, target, s, state.gradient_, state.blending_, state.levels_, state.weight_,
+        filterFrame(frame, variant, target, s, state.gradient_, state.validation_, state.levels_, state.weight_,
                     state.times_, out);
       },
       state.histories_);

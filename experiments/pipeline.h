@@ -77,13 +77,15 @@ class FilterState {
   std::int64_t badPixels() const { return badPixels_; }
   /// Weight of the blend's first history in the last frame.
   core::In<float> blendWeight() const { return weight_; }
+  /// Of everything that is kept or reused between frames.
+  std::size_t bytes() const;
 
  private:
   friend void filter(const Shaded& frame, const Variant& variant, core::PlanesView<const float> target,
                      FilterState& state, core::PlanesView<float> out);
   std::variant<svgf::FilterState<1>, svgf::FilterState<2>, svgf::FilterState<3>> histories_;
   twohistory::GradientState gradient_;
-  twohistory::BlendState blending_;
+  twohistory::Validation validation_;
   svgf::LevelBuffers levels_;
   core::Image<float> weight_;
   std::int64_t badPixels_ = 0;

@@ -13,6 +13,24 @@ struct LuminanceOf {
   float load(int x, int y) const { return core::luminance(planes.load(x, y)); }
 };
 
+template <int K>
+void accumulateColour(const FilterParameters& parameters, const std::array<twohistory::Policy, K>& policies,
+                      In<Taps> taps, PlanesView<const float> radiance, FilterState<K>& s) {
+  const twohistory::Mean<vec3> mean;
+  const LedgerView<K> before = s.ledger[1 - s.now];
+  const twohistory::LedgerSink<K> now{s.ledger[s.now], s.frame};
+  if constexpr (K == 2) {
+    if (parameters.skipTwins && twohistory::canBeTwins(policies)) {
+      if (s.twins.empty()) s.twins = s.accumulatedTwins = twohistory::TwinTiles(taps.width, taps.height);
+      return twohistory::TwinAccumulation<twohistory::Mean<vec3>, PlanesView<const float>>{
+          taps, s.samples, policies, before, now, mean, s.history.views(), radiance, s.accumulated.sinks()}
+          .run(s.accumulatedTwins);
+    }
+  }
+  twohistory::accumulateInto<K>(taps, s.samples, policies, before, now, mean, s.history.views(), radiance,
+                                s.accumulated.sinks());
+}
+
 }  // namespace
 
 template <int K>
@@ -23,17 +41,19 @@ FilterState<K>::FilterState(int width, int height)
       filteredVariance(width, height),
       luminance(width, height),
       tolerance(width, height) {
-  for (auto& image : ledger) image = Image<Ledger<K>>(width, height);
-  for (auto& image : momentsLedger) image = Image<Ledger<1>>(width, height);
+  for (auto& image : ledger) image = Image<PackedLedger<K>>(width, height);
+  for (auto& image : momentsLedger) image = Image<PackedLedger<1>>(width, height);
   for (auto& image : moments) image = Image<Moments>(width, height);
-  for (int j = 0; j < K; ++j) history[j] = accumulated[j] = Planes(width, height);
+  history = accumulated = HistoryColours<K>(width, height);
 }
 
 template <int K>
-std::array<PlanesView<const float>, K> FilterState<K>::historyViews() const {
-  std::array<PlanesView<const float>, K> views;
-  for (int j = 0; j < K; ++j) views[j] = history[j];
-  return views;
+std::size_t FilterState<K>::bytes() const {
+  std::size_t sum = history.bytes() + accumulated.bytes() + twins.bytes() + accumulatedTwins.bytes();
+  for (int i = 0; i < 2; ++i) sum += ledger[i].bytes() + momentsLedger[i].bytes() + moments[i].bytes();
+  for (const Image<float>* image : {&samples, &sampleVariance, &variance, &filteredVariance, &luminance, &tolerance})
+    sum += image->bytes();
+  return sum;
 }
 
 std::int64_t dropBadSamples(PlanesView<const float> radiance, In<float> n, ImageView<float> out) {
@@ -50,16 +70,13 @@ std::int64_t dropBadSamples(PlanesView<const float> radiance, In<float> n, Image
 template <int K>
 void accumulate(const FilterParameters& parameters, const std::array<twohistory::Policy, K>& policies, In<Taps> taps,
                 PlanesView<const float> radiance, FilterState<K>& s) {
-  std::array<PlanesView<float>, K> now;
-  for (int j = 0; j < K; ++j) now[j] = s.accumulated[j];
-  twohistory::accumulate<K>(taps, s.samples, policies, s.ledger[1 - s.now], s.ledger[s.now], twohistory::Mean<vec3>{},
-                            s.historyViews(), radiance, now);
-
+  accumulateColour<K>(parameters, policies, taps, radiance, s);
   const twohistory::Policy frames{twohistory::Weighting::frames, twohistory::Forgetting::decay,
                                   parameters.momentsDecay};
-  twohistory::accumulate<1>(taps, s.samples, {frames}, s.momentsLedger[1 - s.now], s.momentsLedger[s.now],
-                            MomentsMerge{}, std::array<In<Moments>, 1>{s.moments[1 - s.now]}, LuminanceOf{radiance},
-                            std::array<ImageView<Moments>, 1>{s.moments[s.now]});
+  twohistory::accumulateInto<1>(taps, s.samples, {frames}, LedgerView<1>(s.momentsLedger[1 - s.now]),
+                                twohistory::LedgerSink<1>{s.momentsLedger[s.now], s.frame}, MomentsMerge{},
+                                std::array<In<Moments>, 1>{s.moments[1 - s.now]}, LuminanceOf{radiance},
+                                std::array<ImageView<Moments>, 1>{s.moments[s.now]});
 }
 
 #define INSTANTIATE(K)                                                                                     \

@@ -12,9 +12,9 @@ using core::Guide;
 using core::In;
 using core::kBlock;
 
-constexpr int kRadius = 2;
+constexpr int kRadius = kAtrousRadius;
 constexpr float kKernel[kRadius + 1] = {1.0f, 2.0f / 3, 1.0f / 6};  // B3 spline, relative to its centre
-constexpr int kMostPlanes = 9;                                      // three colours of three histories
+constexpr int kMostDifferences = 6;                                 // three colours of two more histories
 
 /// Variance around a pixel, 3x3 Gaussian over pixels of the same instance, renormalised at borders and edges.
 float smoothVariance(const Guide& guide, In<float> variance, int x, int y) {
@@ -45,7 +45,17 @@ void fillTolerance(const Level& level, const Guide& guide) {
 /// Sums of one block of a row.
 struct Sums {
   float weight[kBlock], variance[kBlock];
-  float plane[kMostPlanes][kBlock];
+  float plane[3][kBlock];
+  float difference[kMostDifferences][kBlock];
+};
+
+/// Pixels of a row, and those among them whose differences are not all 0.
+struct Span {
+  int y, x0, x1, d0, d1;
+
+  Span(const Level& level, int row, int begin, int end) : y(row), x0(begin), x1(end), d0(begin), d1(end) {
+    if (level.twins) level.twins->narrow(y, kRadius * level.step, d0, d1);
+  }
 };
 
 TWOFOLD_CLONES void weightKernel(const float* __restrict exponent, const float* __restrict factor, const float* lumP,
@@ -68,15 +78,22 @@ TWOFOLD_CLONES void addKernel(const float* __restrict weight, const float* __res
   for (int i = 0; i < count; ++i) sum[i] += weight[i] * value[i];
 }
 
-void clear(Sums& s, std::size_t planes, int count) {
-  std::fill_n(s.weight, count, 0.0f);
-  std::fill_n(s.variance, count, 0.0f);
-  for (std::size_t c = 0; c < planes; ++c) std::fill_n(s.plane[c], count, 0.0f);
+TWOFOLD_CLONES void addDifferences(const float* __restrict weight, const core::Bfloat16* __restrict value, int count,
+                                   float* __restrict sum) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) sum[i] += weight[i] * static_cast<float>(value[i]);
 }
 
-/// Adds the tap (dx, dy), in pixels, to the sums of [x0, x1).
-void addTap(const Level& level, const Guide& guide, int y, int x0, int x1, int dx, int dy, float kernel, Sums& s) {
-  const int begin = std::max(x0, -dx), end = std::min(x1, guide.width() - dx);
+void clear(Sums& s, std::size_t differences, int count) {
+  std::fill_n(s.weight, count, 0.0f);
+  std::fill_n(s.variance, count, 0.0f);
+  for (auto& plane : s.plane) std::fill_n(plane, count, 0.0f);
+  for (std::size_t c = 0; c < differences; ++c) std::fill_n(s.difference[c], count, 0.0f);
+}
+
+/// Adds the tap (dx, dy), in pixels, to the sums.
+void addTap(const Level& level, const Guide& guide, const Span& span, int dx, int dy, float kernel, Sums& s) {
+  const int x0 = span.x0, y = span.y, begin = std::max(x0, -dx), end = std::min(span.x1, guide.width() - dx);
   if (end <= begin || y + dy < 0 || y + dy >= guide.height()) return;
   float exponent[kBlock], factor[kBlock], weight[kBlock];
   core::edgeTerms(guide, level.edges, y, dx, dy, begin, end, exponent, factor);
@@ -84,37 +101,54 @@ void addTap(const Level& level, const Guide& guide, int y, int x0, int x1, int d
   weightKernel(exponent, factor, level.luminance.row(y) + begin, level.luminance.row(y + dy) + q,
                level.tolerance.row(y) + begin, level.variance.row(y + dy) + q, kernel, count, weight, s.weight + i,
                s.variance + i);
-  for (std::size_t c = 0; c < level.inputs.size(); ++c)
-    addKernel(weight, level.inputs[c].row(y + dy) + q, count, s.plane[c] + i);
+  for (int c = 0; c < 3; ++c) addKernel(weight, level.input.plane[c].row(y + dy) + q, count, s.plane[c] + i);
+  const int first = std::max(begin, span.d0), last = std::min(end, span.d1);
+  if (last <= first) return;
+  for (std::size_t c = 0; c < level.differences.size(); ++c)
+    addDifferences(weight + first - begin, level.differences[c].row(y + dy) + first + dx, last - first,
+                   s.difference[c] + first - x0);
 }
 
-void writeBlock(const Level& level, int y, int x0, int x1, const Sums& s) {
-  for (int x = x0; x < x1; ++x) {
-    const int i = x - x0;
+void writeDifferences(const Level& level, const Span& span, const Sums& s) {
+  for (std::size_t c = 0; c < level.differences.size(); ++c) {
+    core::Bfloat16* out = level.differencesOut[c].row(span.y);
+    const core::Bfloat16* in = level.differences[c].row(span.y);
+    std::fill(out + span.x0, out + span.d0, core::Bfloat16(0));
+    for (int x = span.d0; x < span.d1; ++x) {
+      const int i = x - span.x0;
+      out[x] = s.weight[i] > 0 ? core::Bfloat16(s.difference[c][i] * (1 / s.weight[i])) : in[x];
+    }
+    std::fill(out + std::max(span.d0, span.d1), out + span.x1, core::Bfloat16(0));
+  }
+}
+
+void writeBlock(const Level& level, const Span& span, const Sums& s) {
+  for (int x = span.x0; x < span.x1; ++x) {
+    const int i = x - span.x0;
     const bool any = s.weight[i] > 0;
     const float scale = any ? 1 / s.weight[i] : 0.0f;
-    level.varianceOut(x, y) = any ? s.variance[i] * scale * scale : level.variance(x, y);
-    for (std::size_t c = 0; c < level.inputs.size(); ++c)
-      level.outputs[c](x, y) = any ? s.plane[c][i] * scale : level.inputs[c](x, y);
+    level.varianceOut(x, span.y) = any ? s.variance[i] * scale * scale : level.variance(x, span.y);
+    for (int c = 0; c < 3; ++c)
+      level.output.plane[c](x, span.y) = any ? s.plane[c][i] * scale : level.input.plane[c](x, span.y);
   }
+  writeDifferences(level, span, s);
 }
 
 }  // namespace
 
 void atrous(const Level& level, const Guide& guide) {
-  CHECK_LE(level.inputs.size(), static_cast<std::size_t>(kMostPlanes));
-  CHECK_EQ(level.inputs.size(), level.outputs.size());
+  CHECK_LE(level.differences.size(), static_cast<std::size_t>(kMostDifferences));
+  CHECK_EQ(level.differences.size(), level.differencesOut.size());
   fillTolerance(level, guide);
   core::forEachRow(guide.height(), [&](int y) {
     Sums sums;
     for (int x0 = 0; x0 < guide.width(); x0 += kBlock) {
-      const int x1 = std::min(x0 + kBlock, guide.width());
-      clear(sums, level.inputs.size(), x1 - x0);
+      const Span span(level, y, x0, std::min(x0 + kBlock, guide.width()));
+      clear(sums, level.differences.size(), span.x1 - x0);
       for (int j = -kRadius; j <= kRadius; ++j)
         for (int i = -kRadius; i <= kRadius; ++i)
-          addTap(level, guide, y, x0, x1, i * level.step, j * level.step, kKernel[std::abs(i)] * kKernel[std::abs(j)],
-                 sums);
-      writeBlock(level, y, x0, x1, sums);
+          addTap(level, guide, span, i * level.step, j * level.step, kKernel[std::abs(i)] * kKernel[std::abs(j)], sums);
+      writeBlock(level, span, sums);
     }
   });
 }

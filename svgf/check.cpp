@@ -17,12 +17,12 @@ struct Innovations {
   /// A value of weight w joined a history of weight W - w: before = now + (now - x) w / (W - w).
   Innovation operator()(int x, int y) const {
     const float n = state.samples(x, y);
-    const Ledger<K>& ledger = state.ledger[state.now](x, y);
+    const Ledger<K> ledger = state.ledgerAt(x, y);
     const float fresh = twohistory::freshWeight(policy, n), kept = ledger.weight[0] - fresh;
     const float sample = check.empty() ? core::luminance(radiance.load(x, y)) : check(x, y);
     // A history that is nearly all fresh says nothing of what was before it.
     if (!(n > 0) || !(sample >= 0) || !(kept > 0.05f * ledger.weight[0])) return {};
-    const float now = core::luminance(state.accumulated[0].view().load(x, y));
+    const float now = core::luminance(state.accumulated.base.view().load(x, y));
     const float before = now + (now - core::luminance(radiance.load(x, y))) * fresh / kept;
     return {sample - before, n / (1 + n * ledger.covariance(0, 0))};
   }
@@ -36,10 +36,15 @@ void checkBlend(const twohistory::ValidationParameters& parameters, const std::a
                 twohistory::Validation& validation) {
   validation.fit(taps.width, taps.height);
   const twohistory::UsualCount<K> usual(policies);
-  validation.update(parameters, taps, Innovations<K>{s, policies[0], radiance, check}, [&](int x, int y) {
-    const float n = s.samples(x, y);
-    return twohistory::regimeOf(n, usual(s.ledger[s.now](x, y), n));
-  });
+  validation.update(
+      parameters, taps, Innovations<K>{s, policies[0], radiance, check},
+      [&](int x, int y) {
+        const float n = s.samples(x, y);
+        return twohistory::regimeOf(n, usual(s.ledgerAt(x, y), n));
+      },
+      [&](std::ptrdiff_t i, int j) {
+        return j < K ? core::luminance(s.history.difference[j - 1].view().at(i)) : 0.0f;
+      });
 }
 
 #define INSTANTIATE(K)                                                                                           \

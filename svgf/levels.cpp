@@ -15,26 +15,48 @@ void fillLuminance(PlanesView<const float> colour, ImageView<float> out) {
 template <int K>
 void keepHistories(FilterState<K>& s) {
   core::forEachPixel(s.variance.width(), s.variance.height(), [&](int x, int y) {
-    for (int j = 0; j < K; ++j) s.history[j].view().store(x, y, s.accumulated[j].view().load(x, y));
+    s.history.base.view().store(x, y, s.accumulated.base.view().load(x, y));
+    for (int j = 0; j < K - 1; ++j)
+      for (int c = 0; c < 3; ++c)
+        s.history.difference[j].view().plane[c](x, y) = s.accumulated.difference[j].view().plane[c](x, y);
     s.filteredVariance(x, y) = s.variance(x, y);
   });
+}
+
+/// Twins whose neighbours are none are none after a filter of `radius` pixels.
+void updateTwins(FilterState<2>& s, int radius) {
+  Image<PackedLedger<2>>& ledger = s.ledger[s.now];
+  core::forEachTile(
+      ledger.width(), ledger.height(),
+      [&](int x0, int y0, int x1, int y1) {
+        const bool twins = s.accumulatedTwins.all(x0 - radius, y0 - radius, x1 + radius, y1 + radius);
+        s.twins.of(x0, y0) = twins;
+        if (twins) return;
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) ledger(x, y).unmarkTwin();
+      },
+      twohistory::TwinTiles::kSide);
 }
 
 }  // namespace
 
 template <int K>
 void filterHistories(const FilterParameters& parameters, const Guide& guide, FilterState<K>& s) {
-  if (parameters.levels == 0) return keepHistories(s);
-  std::array<In<float>, 3 * K> inputs;
-  std::array<ImageView<float>, 3 * K> outputs;
-  for (int j = 0; j < K; ++j) {
-    const PlanesView<const float> in = s.accumulated[j];
-    const PlanesView<float> out = s.history[j];
-    for (int c = 0; c < 3; ++c) inputs[3 * j + c] = in.plane[c], outputs[3 * j + c] = out.plane[c];
+  const bool filters = parameters.levels > 0, hasTwins = !s.accumulatedTwins.empty();
+  if constexpr (K == 2)
+    if (hasTwins) updateTwins(s, filters ? kAtrousRadius : 0);
+  if (!filters) return keepHistories(s);
+  std::vector<In<core::Bfloat16>> differences;
+  std::vector<ImageView<core::Bfloat16>> differencesOut;
+  for (int j = 0; j < K - 1; ++j) {
+    const PlanesView<const core::Bfloat16> in = s.accumulated.difference[j];
+    const PlanesView<core::Bfloat16> out = s.history.difference[j];
+    differences.insert(differences.end(), in.plane.begin(), in.plane.end());
+    differencesOut.insert(differencesOut.end(), out.plane.begin(), out.plane.end());
   }
-  fillLuminance(s.accumulated[0], s.luminance);
-  atrous({1, parameters.phiColour, parameters.edges, inputs, outputs, s.variance, s.filteredVariance, s.luminance,
-          s.tolerance},
+  fillLuminance(s.accumulated.base, s.luminance);
+  atrous({1, parameters.phiColour, parameters.edges, s.accumulated.base, s.history.base, s.variance, s.filteredVariance,
+          s.luminance, s.tolerance, differences, differencesOut, hasTwins ? &s.accumulatedTwins : nullptr},
          guide);
 }
 
@@ -43,10 +65,8 @@ int filterFurther(const FilterParameters& parameters, const Guide& guide, LevelB
   for (int level = 1; level < parameters.levels; ++level, from = 1 - from) {
     const PlanesView<const float> in = b.colour[from];
     const PlanesView<float> out = b.colour[1 - from];
-    const std::array<In<float>, 3> inputs{in.plane[0], in.plane[1], in.plane[2]};
-    const std::array<ImageView<float>, 3> outputs{out.plane[0], out.plane[1], out.plane[2]};
     fillLuminance(in, b.luminance);
-    atrous({1 << level, parameters.phiColour, parameters.edges, inputs, outputs, b.variance[from], b.variance[1 - from],
+    atrous({1 << level, parameters.phiColour, parameters.edges, in, out, b.variance[from], b.variance[1 - from],
             b.luminance, b.tolerance},
            guide);
   }

@@ -10,7 +10,9 @@
 #include "core/edge_weight.h"
 #include "core/guide.h"
 #include "svgf/moments.h"
-#include "twohistory/history.h"
+#include "twohistory/history_view.h"
+#include "twohistory/packed_ledger.h"
+#include "twohistory/twins.h"
 #include "twohistory/validation.h"
 
 namespace svgf {
@@ -21,7 +23,10 @@ using core::ImageView;
 using core::In;
 using core::Planes;
 using core::PlanesView;
+using twohistory::HistoryColours;
 using twohistory::Ledger;
+using twohistory::LedgerView;
+using twohistory::PackedLedger;
 using twohistory::Taps;
 
 struct FilterParameters {
@@ -31,6 +36,7 @@ struct FilterParameters {
   float momentsDecay = 0.95f;  ///< of the luminance mean that innovations are measured against
   float spatialBelow = 4;      ///< fewer innovations than this: variance from the neighbourhood
   int spatialRadius = 3;       ///< of that neighbourhood, pixels
+  bool skipTwins = true;       ///< work on one history where the second is the same; changes no bit
 };
 
 template <class V>
@@ -42,6 +48,7 @@ void describe(V& v, FilterParameters& p) {
   v("momentsDecay", p.momentsDecay, "decay a frame of the luminance mean that variance is measured against", 0.1, 1.0);
   v("spatialBelow", p.spatialBelow, "innovations below which variance comes from the neighbourhood", 1.0, 20.0);
   v("spatialRadius", p.spatialRadius, "radius of that neighbourhood in pixels", 1.0, 8.0);
+  v("skipTwins", p.skipTwins, "work on one history where the second is the same; changes no bit");
 }
 
 /// What one variant keeps from frame to frame. Index [now] is written this frame, [1 - now] was written before.
@@ -50,18 +57,21 @@ struct FilterState {
   FilterState(int width, int height);
 
   int now = 0;
-  std::array<Image<Ledger<K>>, 2> ledger;
-  std::array<Image<Ledger<1>>, 2> momentsLedger;
+  std::uint32_t frame = 0;  ///< how many were begun, for the ledgers' rounding
+  std::array<Image<PackedLedger<K>>, 2> ledger;
+  std::array<Image<PackedLedger<1>>, 2> momentsLedger;
   std::array<Image<Moments>, 2> moments;
-  std::array<Planes, K> history;            ///< after the first level: fed back, and blended
-  std::array<Planes, K> accumulated;        ///< before it
-  Image<float> samples;                     ///< sample counts after bad input was taken out
-  Image<float> sampleVariance;              ///< s2 a pixel
-  Image<float> variance, filteredVariance;  ///< of history 0's luminance, before and after a level
-  Image<float> luminance, tolerance;        ///< what the luminance edge weight reads
+  HistoryColours<K> history;                      ///< after the first level: fed back, and blended
+  HistoryColours<K> accumulated;                  ///< before it
+  twohistory::TwinTiles twins, accumulatedTwins;  ///< of each, for pairs that can have twins
+  Image<float> samples;                           ///< sample counts after bad input was taken out
+  Image<float> sampleVariance;                    ///< s2 a pixel
+  Image<float> variance, filteredVariance;        ///< of history 0's luminance, before and after a level
+  Image<float> luminance, tolerance;              ///< what the luminance edge weight reads
 
-  std::array<PlanesView<const float>, K> historyViews() const;
-  void swapFrames() { now = 1 - now; }
+  void swapFrames() { now = 1 - now, ++frame; }
+  Ledger<K> ledgerAt(int x, int y) const { return ledger[now](x, y); }
+  std::size_t bytes() const;
 };
 
 /// Copies sample counts, with 0 where radiance is not finite: such a pixel is a frame without samples.
@@ -100,6 +110,16 @@ struct LevelBuffers {
   std::array<Planes, 2> colour;
   std::array<Image<float>, 2> variance;
   Image<float> luminance, tolerance;
+
+  /// Images that are free until filterFurther runs.
+  std::array<ImageView<float>, 4> free() {
+    const PlanesView<float> planes = colour[1];
+    return {planes.plane[0], planes.plane[1], planes.plane[2], luminance};
+  }
+  std::size_t bytes() const {
+    return colour[0].bytes() + colour[1].bytes() + variance[0].bytes() + variance[1].bytes() + luminance.bytes() +
+           tolerance.bytes();
+  }
 };
 
 /// À-trous levels 2 .. parameters.levels of the blended image in buffers.colour[0], with its variance in

@@ -1,4 +1,6 @@
 // How noisy history 0 is: from innovations over time or, where they are few, from the neighbourhood.
+#include <atomic>
+
 #include "svgf/svgf.h"
 
 namespace svgf {
@@ -23,7 +25,7 @@ void forEachNeighbour(const FilterParameters& parameters, const Guide& guide, iv
 /// degree of freedom that the mean takes. 0 where there is only one.
 template <int K>
 float spatialSampleVariance(const FilterParameters& parameters, const Guide& guide, const FilterState<K>& s, ivec2 p) {
-  const auto relativeVariance = [&](ivec2 q) { return s.momentsLedger[s.now](q.x, q.y).covariance(0, 0); };
+  const auto relativeVariance = [&](ivec2 q) { return Ledger<1>(s.momentsLedger[s.now](q.x, q.y)).covariance(0, 0); };
   float total = 0, totalSquared = 0, mean = 0;
   forEachNeighbour(parameters, guide, p, [&](ivec2 q, float w) {
     const float v = relativeVariance(q);
@@ -51,22 +53,28 @@ float spatialSampleVariance(const FilterParameters& parameters, const Guide& gui
 /// sample.
 template <int K>
 bool hasSeenSamples(const FilterState<K>& s, ivec2 p) {
-  return s.momentsLedger[s.now](p.x, p.y).weight[0] > 0;
+  return Ledger<1>(s.momentsLedger[s.now](p.x, p.y)).weight[0] > 0;
 }
+
+/// A filled pixel's histories may differ. Pixels of one tile may be filled at a time.
+void markFilled(std::uint8_t& flag) { std::atomic_ref(flag).store(0, std::memory_order_relaxed); }
 
 /// Gives a pixel that never saw a sample its neighbours' colours. Reads only pixels that have seen one.
 template <int K>
 void fillFromNeighbours(const FilterParameters& parameters, const Guide& guide, FilterState<K>& s, ivec2 p) {
+  const auto views = s.accumulated.views();
   std::array<vec3, K> sum;
   sum.fill(vec3(0));
   float total = 0;
   forEachNeighbour(parameters, guide, p, [&](ivec2 q, float w) {
     if (!hasSeenSamples(s, q)) return;
-    for (int j = 0; j < K; ++j) sum[j] += w * s.accumulated[j].view().load(q.x, q.y);
+    for (int j = 0; j < K; ++j) sum[j] += w * views[j].load(q.x, q.y);
     total += w;
   });
   if (!(total > 0)) return;
-  for (int j = 0; j < K; ++j) s.accumulated[j].view().store(p.x, p.y, sum[j] / total);
+  const auto sinks = s.accumulated.sinks();
+  for (int j = 0; j < K; ++j) sinks[j].store(p.x, p.y, sum[j] / total);
+  if (!s.accumulatedTwins.empty()) markFilled(s.accumulatedTwins.of(p.x, p.y));
 }
 
 }  // namespace
@@ -75,7 +83,7 @@ template <int K>
 void estimateVariance(const FilterParameters& parameters, const Guide& guide, FilterState<K>& s) {
   core::forEachPixel(guide.width(), guide.height(), [&](int x, int y) {
     const Moments& m = s.moments[s.now](x, y);
-    const Ledger<K>& ledger = s.ledger[s.now](x, y);
+    const Ledger<1> ledger = s.ledger[s.now](x, y).first();
     if (guide.id(x, y) == core::kNoId) {
       s.sampleVariance(x, y) = s.variance(x, y) = 0;
       return;

@@ -150,7 +150,7 @@ TEST(Mean, TapsOfUnequalWeightMixInProportionToWhatTheyStandFor) {
   ledger(1, 0).weight[0] = 160, value(1, 0) = vec3(1);
   const Taps half{{0, 1, 0, 0}, {0.5f, 0.5f, 0, 0}};
   Step step;
-  step.taps = twohistory::premultiplied<1>(half, ledger, 0);
+  step.taps = twohistory::premultiplied<1>(half, ledger.view(), 0);
   const vec3 mixed = twohistory::Mean<vec3>{}.gather(In<vec3>(value), step);
   EXPECT_FLOAT_EQ(mixed.x, 160.0f / 161);
 }

@@ -96,7 +96,7 @@ TEST(UnequalTaps, NaiveMixingOfMeansClaimsTwentyTimesTooLittleVariance) {
   const float naiveTrue = 0.25f * before(0, 0).covariance(0, 0) + 0.25f * before(1, 0).covariance(0, 0);
   EXPECT_NEAR(naiveTrue, 0.25f, 0.01f);              // of the mean of means
   EXPECT_NEAR(1 / mixed.weight[0], 0.0124f, 1e-3f);  // what the interpolated weight would claim: 20 times less
-  const twohistory::Taps b = twohistory::premultiplied<1>(taps, before, 0);
+  const twohistory::Taps b = twohistory::premultiplied<1>(taps, before.view(), 0);
   const float ours = b.b[0] * b.b[0] * before(0, 0).covariance(0, 0) + b.b[1] * b.b[1] * before(1, 0).covariance(0, 0);
   EXPECT_LT(ours, 0.0065f);                 // of the premultiplied mix
   EXPECT_GE(mixed.covariance(0, 0), ours);  // what we claim is no less

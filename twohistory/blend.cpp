@@ -18,7 +18,7 @@ template <int K>
 Weights<K> pairWeights(const BlendParameters& p, float first) {
   Weights<K> w{};
   w[p.pair[0]] += first;
-  w[p.pair[1]] += 1 - first;
+  if (first != 1) w[p.pair[1]] += 1 - first;
   return w;
 }
 
@@ -35,38 +35,46 @@ float varianceOf(const Ledger<K>& ledger, const Weights<K>& lambda) {
 template <int K>
 struct Sink {
   const Histories<K>& h;
-  core::PlanesView<float> out;
-  core::ImageView<float> variance, weight;
-  int reported;            ///< history whose weight is written to `weight`
+  const Blended& out;
+  int reported;            ///< history whose weight is written
   Validation* validation;  ///< null = blends go unchecked
 
-  /// Books the blend's shifts away from history 0 for the next check, and takes back what earlier checks refuted.
+  /// Books the blend's weights for the next check, and takes back what earlier checks refuted.
   Weights<K> checked(int x, int y, Weights<K> lambda) const {
-    Shifts shift{};
-    for (int j = 1; j < K; ++j) shift[j - 1] = lambda[j] * luminance(h.colour[j].load(x, y) - h.colour[0].load(x, y));
-    validation->storeShifts(x, y, shift);
+    Shifts share{};
+    for (int j = 1; j < K; ++j) share[j - 1] = lambda[j];
+    validation->storeShares(x, y, share);
     const Shifts keep = validation->keep(x, y, validation->regime(x, y));
     lambda[0] = 1;
     for (int j = 1; j < K; ++j) lambda[j] *= keep[j - 1], lambda[0] -= lambda[j];
     return lambda;
   }
 
-  void write(int x, int y, const Weights<K>& wanted) const {
+  void write(int x, int y, const Ledger<K>& ledger, const Weights<K>& wanted) const {
     const Weights<K> lambda = validation ? checked(x, y, wanted) : wanted;
-    vec3 sum(0);
-    for (int j = 0; j < K; ++j)
-      if (lambda[j] != 0) sum += lambda[j] * h.colour[j].load(x, y);
-    out.store(x, y, glm::max(sum, vec3(0)));  // extrapolation may undershoot; radiance is not negative
-    const float own = h.ledger(x, y).covariance(0, 0);
-    variance(x, y) = own > 0 ? h.variance(x, y) * varianceOf<K>(h.ledger(x, y), lambda) / own : h.variance(x, y);
-    if (!weight.empty()) weight(x, y) = lambda[reported];
+    vec3 sum = h.colour[0].load(x, y);  // weights have sum 1, and differences are what is stored
+    for (int j = 1; j < K; ++j)
+      if (lambda[j] != 0) sum += lambda[j] * h.colour[j].fromBase(x, y);
+    const float own = ledger.covariance(0, 0);
+    const float share = own > 0 ? varianceOf<K>(ledger, lambda) / own : 1.0f;
+    store(x, y, sum, h.variance(x, y) * share, lambda[reported]);
+  }
+
+  /// All histories are history 0, so the blend is, whatever the weights.
+  void writeTwin(int x, int y) const {
+    store(x, y, h.colour[0].load(x, y), h.variance(x, y), reported == 0 ? 1.0f : 0.0f);
+  }
+
+  void store(int x, int y, const vec3& colour, float variance, float weight) const {
+    out.colour.store(x, y, glm::max(colour, vec3(0)));  // extrapolation may undershoot; radiance is not negative
+    out.variance(x, y) = variance;
+    if (!out.weight.empty()) out.weight(x, y) = weight;
   }
 };
 
 /// [blend seed] q = clamp(lum |g| / STD(lum I_u), 0, 1), I_b = lerp(I_opt, I_u, q), so p_b = p + q (1 - p).
 template <int K>
-float seedWeight(const Histories<K>& h, const BlendParameters& p, int x, int y) {
-  const Ledger<K>& ledger = h.ledger(x, y);
+float seedWeight(const Histories<K>& h, const Ledger<K>& ledger, const BlendParameters& p, int x, int y) {
   const float optimal = leastVarianceWeight(pairOf(ledger, p.pair[0], p.pair[1]));
   const float own = ledger.covariance(0, 0), first = ledger.covariance(p.pair[0], p.pair[0]);
   const float deviation = std::sqrt(own > 0 ? h.variance(x, y) * first / own : h.variance(x, y));
@@ -85,8 +93,7 @@ float oracleWeight(const Histories<K>& h, const BlendParameters& p, int x, int y
 }
 
 template <int K>
-Weights<K> customWeights(const Histories<K>& h, const BlendParameters& p, int x, int y) {
-  const Ledger<K>& ledger = h.ledger(x, y);
+Weights<K> customWeights(const Histories<K>& h, const Ledger<K>& ledger, const BlendParameters& p, int x, int y) {
   PixelHistories pixel{K, {}, {}, {}, {}, h.sampleVariance(x, y), h.samples(x, y)};
   for (int j = 0; j < K; ++j) {
     pixel.colour[j] = h.colour[j].load(x, y), pixel.weight[j] = ledger.weight[j], pixel.age[j] = ledger.age(j);
@@ -100,14 +107,13 @@ Weights<K> customWeights(const Histories<K>& h, const BlendParameters& p, int x,
 
 /// Blends whose weight needs only the pixel itself.
 template <int K>
-float localWeight(const Histories<K>& h, const BlendParameters& p, int x, int y) {
-  const Ledger<K>& ledger = h.ledger(x, y);
+float localWeight(const Histories<K>& h, const Ledger<K>& ledger, const BlendParameters& p, int x, int y) {
   switch (p.mode) {
     case BlendMode::published:
       return publishedWeight(ledger, p.pair[0], p.pair[1]);
     case BlendMode::seed:
     case BlendMode::seedSlide:
-      return seedWeight(h, p, x, y);
+      return seedWeight(h, ledger, p, x, y);
     case BlendMode::oracle:
       if (!h.target.empty()) return oracleWeight(h, p, x, y);
       [[fallthrough]];
@@ -136,74 +142,107 @@ Weights<K> driftWeights(const Ledger<K>& ledger, const BlendParameters& p, const
   return lagWeights(ledger, against, windowEvidence(ledger, against, row, i, p.noise == NoiseEstimate::safe), p.lowest);
 }
 
-/// Fills the planes that sumDrift averages: lum(X_j - X_k) and its noise.
+/// Fills the planes that sumDrift averages: lum(X_j - X_k) and its noise. Both are 0 for twins.
 template <int K>
-void prepareDifference(const Histories<K>& h, int j, int k, core::ImageView<float> value,
+void prepareDifference(const Histories<K>& h, const TwinTiles* twins, int j, int k, core::ImageView<float> value,
                        core::ImageView<float> noise) {
-  core::forEachPixel(h.ledger.width, h.ledger.height, [&](int x, int y) {
-    value(x, y) = luminance(h.colour[j].load(x, y) - h.colour[k].load(x, y));
-    noise(x, y) = h.sampleVariance(x, y) * pairOf(h.ledger(x, y), j, k).difference();
-  });
+  core::forEachTile(
+      value.width, value.height,
+      [&](int x0, int y0, int x1, int y1) {
+        const bool same = twins && twins->at(x0, y0);
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) {
+            value(x, y) = same ? 0 : luminance(h.colour[j].fromBase(x, y) - h.colour[k].fromBase(x, y));
+            noise(x, y) = same ? 0 : h.sampleVariance(x, y) * pairOf<K, float>(h.ledger(x, y), j, k).difference();
+          }
+      },
+      TwinTiles::kSide);
+}
+
+/// Blends of twins that are history 0 for certain. The others' weights need not have a sum of exactly 1.
+const TwinTiles* usefulTwins(const TwinTiles* twins, const BlendParameters& p) {
+  const bool known = p.mode == BlendMode::optimal || p.mode == BlendMode::seed || p.mode == BlendMode::seedSlide ||
+                     p.mode == BlendMode::consistent || p.mode == BlendMode::lag;
+  return known && p.pair[0] == 0 && !p.validation.on ? twins : nullptr;
 }
 
 /// lagAll compares every history with the freshest, the others their pair.
 template <int K>
-void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, BlendState& state,
-                  const Sink<K>& sink) {
+void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, const TwinTiles* twins,
+                  const BlendScratch& scratch, const Sink<K>& sink) {
   const bool all = p.mode == BlendMode::lagAll;
   const Against<K> against(p.pair[1]);
   const int count = all ? K - 1 : 1;
-  state.fit(count, guide.width(), guide.height());
   std::array<Difference, DriftRow::kMost> differences;
   for (int k = 0; k < count; ++k) {
-    prepareDifference(h, all ? against.of[k] : p.pair[0], p.pair[1], state.difference[k], state.noise[k]);
-    differences[k] = {state.difference[k], state.noise[k]};
+    prepareDifference(h, twins, all ? against.of[k] : p.pair[0], p.pair[1], scratch[2 * k], scratch[2 * k + 1]);
+    differences[k] = {scratch[2 * k], scratch[2 * k + 1]};
   }
   core::forEachRow(guide.height(), [&](int y) {
     DriftRow row;
     for (int x0 = 0; x0 < guide.width(); x0 += core::kBlock) {
       const int x1 = std::min(x0 + core::kBlock, guide.width());
-      sumDrift(guide, p.edges, differences.data(), count, h.sampleVariance, p.radius, y, x0, x1, row);
-      for (int x = x0; x < x1; ++x) sink.write(x, y, driftWeights(h.ledger(x, y), p, row, x - x0));
+      int begin = x0, end = x1;
+      if (twins) twins->narrow(y, p.radius, begin, end);
+      for (int x = x0; x < begin; ++x) sink.writeTwin(x, y);
+      for (int x = std::max(begin, end); x < x1; ++x) sink.writeTwin(x, y);
+      if (begin >= end) continue;
+      sumDrift(guide, p.edges, differences.data(), count, h.sampleVariance, p.radius, y, begin, end, row);
+      for (int x = begin; x < end; ++x) {
+        const Ledger<K> ledger = h.ledger(x, y);
+        sink.write(x, y, ledger, driftWeights(ledger, p, row, x - begin));
+      }
     }
   });
 }
 
-}  // namespace
-
-void BlendState::fit(int differences, int width, int height) {
-  for (int k = 0; k < differences; ++k) {
-    if (difference[k].width() == width && difference[k].height() == height) continue;
-    difference[k] = core::Image<float>(width, height);
-    noise[k] = core::Image<float>(width, height);
-  }
+/// Blends that look at one pixel at a time.
+template <int K>
+Weights<K> ownWeights(const Histories<K>& h, const Ledger<K>& ledger, const BlendParameters& p, int x, int y) {
+  if (p.mode == BlendMode::custom) return customWeights(h, ledger, p, x, y);
+  return pairWeights<K>(p, p.mode == BlendMode::first ? 1 : localWeight(h, ledger, p, x, y));
 }
 
 template <int K>
-void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, BlendState& state,
-           core::PlanesView<float> out, core::ImageView<float> variance, core::ImageView<float> weight) {
-  CHECK_LT(p.pair[0], K);
-  const Sink<K> sink{h, out, variance, weight, p.pair[0], p.validation.on ? &state.validation : nullptr};
-  const int width = guide.width(), height = guide.height();
-  if (p.mode == BlendMode::first) {
-    Weights<K> only{};
-    only[p.pair[0]] = 1;
-    return core::forEachPixel(width, height, [&](int x, int y) { sink.write(x, y, only); });
-  }
-  if (p.mode == BlendMode::custom)
-    return core::forEachPixel(width, height, [&](int x, int y) { sink.write(x, y, customWeights(h, p, x, y)); });
-  CHECK_LT(p.pair[1], K);
-  if (p.mode == BlendMode::lag || p.mode == BlendMode::lagAll || p.mode == BlendMode::consistent)
-    return blendByDrift(h, guide, p, state, sink);
-  core::forEachPixel(width, height,
-                     [&](int x, int y) { sink.write(x, y, pairWeights<K>(p, localWeight(h, p, x, y))); });
+void blendByPixel(const Histories<K>& h, const BlendParameters& p, const TwinTiles* twins, const Sink<K>& sink) {
+  core::forEachTile(
+      h.variance.width, h.variance.height,
+      [&](int x0, int y0, int x1, int y1) {
+        const bool same = twins && twins->at(x0, y0);
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) {
+            if (same) {
+              sink.writeTwin(x, y);
+              continue;
+            }
+            const Ledger<K> ledger = h.ledger(x, y);
+            sink.write(x, y, ledger, ownWeights(h, ledger, p, x, y));
+          }
+      },
+      TwinTiles::kSide);
 }
 
-template void blend(const Histories<1>&, const core::Guide&, const BlendParameters&, BlendState&,
-                    core::PlanesView<float>, core::ImageView<float>, core::ImageView<float>);
-template void blend(const Histories<2>&, const core::Guide&, const BlendParameters&, BlendState&,
-                    core::PlanesView<float>, core::ImageView<float>, core::ImageView<float>);
-template void blend(const Histories<3>&, const core::Guide&, const BlendParameters&, BlendState&,
-                    core::PlanesView<float>, core::ImageView<float>, core::ImageView<float>);
+}  // namespace
+
+template <int K>
+void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, Validation& validation,
+           const BlendScratch& scratch, const Blended& out) {
+  const bool usesPair = p.mode != BlendMode::first && p.mode != BlendMode::custom;
+  CHECK_LT(p.pair[0], K);
+  if (usesPair) CHECK_LT(p.pair[1], K);
+  const Sink<K> sink{h, out, p.pair[0], p.validation.on ? &validation : nullptr};
+  const TwinTiles* twins = usefulTwins(h.twins, p);
+  if (p.mode == BlendMode::lag || p.mode == BlendMode::lagAll || p.mode == BlendMode::consistent)
+    return blendByDrift(h, guide, p, twins, scratch, sink);
+  blendByPixel(h, p, twins, sink);
+}
+
+#define INSTANTIATE(K)                                                                              \
+  template void blend(const Histories<K>&, const core::Guide&, const BlendParameters&, Validation&, \
+                      const BlendScratch&, const Blended&);
+INSTANTIATE(1)
+INSTANTIATE(2)
+INSTANTIATE(3)
+#undef INSTANTIATE
 
 }  // namespace twohistory

@@ -6,7 +6,9 @@
 #include "core/edge_weight.h"
 #include "core/guide.h"
 #include "twohistory/drift.h"
-#include "twohistory/ledger.h"
+#include "twohistory/history_view.h"
+#include "twohistory/packed_ledger.h"
+#include "twohistory/twins.h"
 #include "twohistory/validation.h"
 
 namespace twohistory {
@@ -80,29 +82,30 @@ void describe(V& v, BlendParameters& p) {
 /// What a blend reads. All images have one size; colours are after the first filter level.
 template <int K>
 struct Histories {
-  std::array<core::PlanesView<const float>, K> colour;
-  core::In<Ledger<K>> ledger;
+  std::array<HistoryView, K> colour;
+  LedgerView<K> ledger;
   core::In<float> sampleVariance;          ///< s2: luminance variance of one sample
   core::In<float> samples;                 ///< n of this frame
   core::In<float> variance;                ///< luminance variance of history 0 after the filter
   core::PlanesView<const float> gradient;  ///< seed, seedSlide: change per frame; else empty
   core::PlanesView<const float> target;    ///< oracle: the demodulated truth; else empty
+  const TwinTiles* twins = nullptr;        ///< where the second history is the first; null = not known
 };
 
-/// What a blend keeps: planes that the window estimate needs, allocated once, and the check of earlier frames.
-struct BlendState {
-  std::array<core::Image<float>, DriftRow::kMost> difference, noise;
-  Validation validation;
+/// Planes that the window estimate needs while blend() runs, and nothing keeps: a value and its noise for each of at
+/// most two differences. Any images of the right size that are free will do, but not out or variance.
+using BlendScratch = std::array<core::ImageView<float>, 2 * DriftRow::kMost>;
 
-  /// Makes room for as many differences as a blend looks at.
-  void fit(int differences, int width, int height);
+/// Where a blend's result goes. weight: p where the blend has one (else 1); may be empty.
+struct Blended {
+  core::PlanesView<float> colour;
+  core::ImageView<float> variance;  ///< of the luminance, what remains
+  core::ImageView<float> weight{};
 };
 
-/// Blends every pixel into out, and writes the luminance variance that remains. K = 1, 2 or 3.
-/// weight: p where the blend has one (else 1); may be empty.
+/// Blends every pixel. K = 1, 2 or 3. validation: the check of earlier frames, where parameters ask for it.
 template <int K>
 void blend(const Histories<K>& histories, const core::Guide& guide, const BlendParameters& parameters,
-           BlendState& state, core::PlanesView<float> out, core::ImageView<float> variance,
-           core::ImageView<float> weight = {});
+           Validation& validation, const BlendScratch& scratch, const Blended& out);
 
 }  // namespace twohistory

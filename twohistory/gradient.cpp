@@ -8,7 +8,8 @@ namespace {
 using core::ivec2;
 using core::vec3;
 
-vec3 gatherMean(core::PlanesView<const float> before, const Taps& taps) {
+template <class View>
+vec3 gatherMean(const View& before, const Taps& taps) {
   Step step;
   step.taps = taps;
   return Mean<vec3>{}.gather(before, step);
@@ -38,7 +39,7 @@ void GradientState::fit(int width, int height) {
 
 template <int K>
 void updateGradient(const GradientParameters& p, const core::Guide& guide, In<Taps> taps, In<float> n,
-                    In<Ledger<K>> ledgerBefore, int history, core::PlanesView<const float> before,
+                    LedgerView<K> ledgerBefore, int history, const HistoryView& before,
                     core::PlanesView<const float> fresh, GradientState& state) {
   const int width = guide.width(), height = guide.height();
   const core::PlanesView<const float> gradient = state.gradient, signal = state.signal;
@@ -48,7 +49,7 @@ void updateGradient(const GradientParameters& p, const core::Guide& guide, In<Ta
     if (t.valid()) {
       g = gatherMean(gradient, t);
       if (n(x, y) > 0 &&
-          gather<K, float>(t, ledgerBefore).weight[history] > 0) {  // else there is nothing to differ from
+          gatherFrom<K, float>(t, ledgerBefore).weight[history] > 0) {  // else there is nothing to differ from
         const vec3 past = p.source == GradientSource::filtered
                               ? gatherMean(before, premultiplied<K>(t, ledgerBefore, history))
                               : gatherMean(signal, t);
@@ -71,11 +72,11 @@ void updateGradient(const GradientParameters& p, const core::Guide& guide, In<Ta
   });
 }
 
-template void updateGradient(const GradientParameters&, const core::Guide&, In<Taps>, In<float>, In<Ledger<1>>, int,
-                             core::PlanesView<const float>, core::PlanesView<const float>, GradientState&);
-template void updateGradient(const GradientParameters&, const core::Guide&, In<Taps>, In<float>, In<Ledger<2>>, int,
-                             core::PlanesView<const float>, core::PlanesView<const float>, GradientState&);
-template void updateGradient(const GradientParameters&, const core::Guide&, In<Taps>, In<float>, In<Ledger<3>>, int,
-                             core::PlanesView<const float>, core::PlanesView<const float>, GradientState&);
+template void updateGradient(const GradientParameters&, const core::Guide&, In<Taps>, In<float>, LedgerView<1>, int,
+                             const HistoryView&, core::PlanesView<const float>, GradientState&);
+template void updateGradient(const GradientParameters&, const core::Guide&, In<Taps>, In<float>, LedgerView<2>, int,
+                             const HistoryView&, core::PlanesView<const float>, GradientState&);
+template void updateGradient(const GradientParameters&, const core::Guide&, In<Taps>, In<float>, LedgerView<3>, int,
+                             const HistoryView&, core::PlanesView<const float>, GradientState&);
 
 }  // namespace twohistory

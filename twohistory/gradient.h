@@ -4,6 +4,8 @@
 
 #include "core/edge_weight.h"
 #include "twohistory/history.h"
+#include "twohistory/history_view.h"
+#include "twohistory/packed_ledger.h"
 
 namespace twohistory {
 
@@ -21,13 +23,14 @@ struct GradientParameters {
 struct GradientState {
   core::Planes gradient, unfiltered, signal;
   void fit(int width, int height);
+  std::size_t bytes() const { return gradient.bytes() + unfiltered.bytes() + signal.bytes(); }
 };
 
 /// One frame of the gradient: update, then a 3x3 edge-aware filter whose result is fed back. Where n = 0 the gradient
 /// stays; after a reset it is 0. before: the fed-back first history; fresh: demodulated radiance.
 template <int K>
 void updateGradient(const GradientParameters& parameters, const core::Guide& guide, In<Taps> taps, In<float> n,
-                    In<Ledger<K>> ledgerBefore, int history, core::PlanesView<const float> before,
+                    LedgerView<K> ledgerBefore, int history, const HistoryView& before,
                     core::PlanesView<const float> fresh, GradientState& state);
 
 }  // namespace twohistory

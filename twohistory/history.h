@@ -41,56 +41,74 @@ concept Merge = requires(const M& m, const Before& before, const Value& old, con
 
 /// Premultiplied tap weights b_k W_k / sum b W: means whose weights differ mix in proportion to what they stand for.
 /// Taps that are all empty keep their bilinear weights, so that a value outlives its weight.
-template <int K>
-Taps premultiplied(const Taps& taps, In<Ledger<K>> before, int j) {
+template <int K, class Ledgers>
+Taps premultiplied(const Taps& taps, const Ledgers& before, int j) {
   Taps result = taps;
   float sum = 0;
-  for (int k = 0; k < 4; ++k)
-    if (taps.b[k] > 0) sum += result.b[k] = taps.b[k] * before.at(taps.pixel[k]).weight[j];
+  for (int k = 0; k < 4; ++k) {
+    if (!(taps.b[k] > 0)) continue;
+    const Ledger<K>& tap = before.at(taps.pixel[k]);
+    sum += result.b[k] = taps.b[k] * tap.weight[j];
+  }
   if (!(sum > 0)) return taps;
   for (float& b : result.b) b /= sum;
   return result;
 }
 
-/// All that one pixel's histories do in one frame, before any value is touched.
-template <int K>
+/// All that one pixel's histories do in one frame, before any value is touched. Ledgers: anything whose at(index) is or
+/// becomes a Ledger<K>.
+template <int K, class Ledgers>
 struct Recall {
+  const Taps& taps;
+  const Ledgers& before;
+  float samples;
   Ledger<K> gathered, now;
   Advance<K> change;
 
-  Recall(const Taps& taps, In<Ledger<K>> before, const Policies<K>& policies, float n)
-      : gathered(gather<K, float>(taps, before)), change(advanceOf(gathered, policies, n)) {
+  Recall(const Taps& t, const Ledgers& ledgers, const Policies<K>& policies, float n)
+      : taps(t),
+        before(ledgers),
+        samples(n),
+        gathered(gatherFrom<K, float>(t, ledgers)),
+        change(advanceOf(gathered, policies, n)) {
     now = advance(gathered, change, n);
   }
-  Step step(int j, core::ivec2 pixel, const Taps& taps, In<Ledger<K>> before, float n) const {
-    return {pixel, premultiplied(taps, before, j), change.factor[j] * gathered.weight[j], change.fresh[j],
-            n,     gathered.covariance(j, j)};
+  Step step(int j, core::ivec2 pixel) const {
+    return {pixel,   premultiplied<K>(taps, before, j), change.factor[j] * gathered.weight[j], change.fresh[j],
+            samples, gathered.covariance(j, j)};
   }
 };
 
 /// Carries K histories of one input through one frame.
 ///
 /// taps: per pixel, into the previous frame. n: sample counts >= 0, 0 = nothing new. before / now: views of the K
-/// remembered values (anything with at(index), and store(x, y, value)); fresh: anything with load(x, y). All images
-/// have one size and no padding; before and now must not overlap.
+/// remembered values (anything with at(index), and store(x, y, value)); fresh: anything with load(x, y). Ledgers
+/// likewise: at(index) gives what becomes a Ledger<K>, store(x, y, ledger) takes one. All images have one size and no
+/// padding; before and now must not overlap.
+template <int K, class LedgersBefore, class LedgersNow, class M, class Before, class Fresh, class Now>
+void accumulateInto(In<Taps> taps, In<float> n, const Policies<K>& policies, const LedgersBefore& ledgersBefore,
+                    const LedgersNow& ledgersNow, const M& merge, const std::array<Before, K>& before,
+                    const Fresh& fresh, const std::array<Now, K>& now, int tile = core::kDefaultTile) {
+  core::forEachPixel(
+      n.width, n.height,
+      [&](int x, int y) {
+        const Recall<K, LedgersBefore> recall(taps(x, y), ledgersBefore, policies, n(x, y));
+        ledgersNow.store(x, y, recall.now);
+        for (int j = 0; j < K; ++j) {
+          const Step step = recall.step(j, {x, y});
+          now[j].store(x, y, merge.merge(merge.gather(before[j], step), fresh.load(x, y), step));
+        }
+      },
+      tile);
+}
+
+/// The same with ledgers as they are.
 template <int K, class M, class Before, class Fresh, class Now>
 void accumulate(In<Taps> taps, In<float> n, const Policies<K>& policies, In<Ledger<K>> ledgerBefore,
                 ImageView<Ledger<K>> ledgerNow, const M& merge, const std::array<Before, K>& before, const Fresh& fresh,
                 const std::array<Now, K>& now, int tile = core::kDefaultTile) {
   CHECK_EQ(ledgerBefore.pitch, ledgerBefore.width);
-  core::forEachPixel(
-      n.width, n.height,
-      [&](int x, int y) {
-        const Taps& t = taps(x, y);
-        const float samples = n(x, y);
-        const Recall<K> recall(t, ledgerBefore, policies, samples);
-        ledgerNow(x, y) = recall.now;
-        for (int j = 0; j < K; ++j) {
-          const Step step = recall.step(j, {x, y}, t, ledgerBefore, samples);
-          now[j].store(x, y, merge.merge(merge.gather(before[j], step), fresh.load(x, y), step));
-        }
-      },
-      tile);
+  accumulateInto<K>(taps, n, policies, ledgerBefore, ledgerNow, merge, before, fresh, now, tile);
 }
 
 }  // namespace twohistory

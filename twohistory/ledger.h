@@ -90,8 +90,9 @@ Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Policies<K>& poli
 
 /// What the taps of the previous frame know. Weights and age sums are sums, so they mix with b; power sums
 /// mix with b^1.5, between b^2 (independent taps) and b (fully dependent ones): measured, see docs/decisions.md.
-template <int K, class Real>
-Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before) {
+/// before: anything whose at(index) is or becomes a Ledger<K, Real>.
+template <int K, class Real, class Before>
+Ledger<K, Real> gatherFrom(const Taps& taps, const Before& before) {
   Ledger<K, Real> sum;
   for (int k = 0; k < 4; ++k) {
     const Real b = taps.b[k];
@@ -105,6 +106,11 @@ Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K,
     for (int i = 0; i < Ledger<K, Real>::kPairs; ++i) sum.powerSums[i] += power * tap.powerSums[i];
   }
   return sum;
+}
+
+template <int K, class Real>
+Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before) {
+  return gatherFrom<K, Real>(taps, before);
 }
 
 }  // namespace twohistory

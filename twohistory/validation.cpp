@@ -32,8 +32,8 @@ Shifts Evidence::solve(const ValidationParameters& p) const {
 }
 
 void Validation::fit(int width, int height) {
-  if (shift_[0].width() == width && shift_[0].height() == height) return;
-  for (auto& image : shift_) image = core::Image<float>(width, height);
+  if (share_.width() == width && share_.height() == height) return;
+  share_ = core::Image<Shares>(width, height);
   regime_ = core::Image<Regime>(width, height, Regime::equal);
   evidence_ = core::Image<TileEvidence>((width + kTile - 1) / kTile, (height + kTile - 1) / kTile);
   std::array<Shifts, kRegimes> all;

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include "core/image.h"
 #include "core/parallel.h"
@@ -82,26 +83,34 @@ class Validation {
  public:
   static constexpr int kTile = 16;  ///< pixels on a side
 
+  std::size_t bytes() const { return share_.bytes() + regime_.bytes() + evidence_.bytes() + keep_.bytes(); }
   /// Makes room; forgets everything if the size is new.
   void fit(int width, int height);
   /// Reads this frame's independent samples against the last blend's shifts. innovation(x, y); regime(x, y).
-  template <class InnovationAt, class RegimeAt>
+  /// difference(i, j): lum(X_j - X_0), j >= 1, at index i of the frame before, as the last blend saw it.
+  template <class InnovationAt, class RegimeAt, class DifferenceAt>
   void update(const ValidationParameters& p, core::In<Taps> taps, const InnovationAt& innovation,
-              const RegimeAt& regime);
+              const RegimeAt& regime, const DifferenceAt& difference);
   Regime regime(int x, int y) const { return regime_(x, y); }
   /// Shares of the shifts to keep at a pixel.
   Shifts keep(int x, int y, Regime regime) const;
-  /// lambda_j lum(X_j - X_0) of this frame's blend, before it is drawn back.
-  void storeShifts(int x, int y, const Shifts& s) {
-    for (int j = 0; j < kShifts; ++j) shift_[j](x, y) = s[j];
+  /// lambda_j of this frame's blend for j >= 1, before it is drawn back; kept to 1 / 64 within [-4, 4].
+  void storeShares(int x, int y, const Shifts& lambda) {
+    for (int j = 0; j < kShifts; ++j) share_(x, y)[j] = packShare(lambda[j]);
   }
 
  private:
   using TileEvidence = std::array<Evidence, kRegimes>;
-  Shifts gathered(const Taps& t) const;
+  using Shares = std::array<std::int8_t, kShifts>;
+  static constexpr float kShareSteps = 32;
+  static std::int8_t packShare(float lambda) {
+    return static_cast<std::int8_t>(std::lround(std::clamp(lambda * kShareSteps, -127.0f, 127.0f)));
+  }
+  template <class DifferenceAt>
+  Shifts gathered(const Taps& t, const DifferenceAt& difference) const;
   void solve(const ValidationParameters& p);
 
-  std::array<core::Image<float>, kShifts> shift_;
+  core::Image<Shares> share_;
   core::Image<Regime> regime_;
   core::Image<TileEvidence> evidence_;
   core::Image<std::array<Shifts, kRegimes>> keep_;
@@ -118,17 +127,21 @@ UsualCount<K>::UsualCount(const Policies<K>& policies) {
     scale_ = static_cast<float>((1 - policies[samples_].amount) / (1 - policies[frames_].amount));
 }
 
-inline Shifts Validation::gathered(const Taps& t) const {
+template <class DifferenceAt>
+Shifts Validation::gathered(const Taps& t, const DifferenceAt& difference) const {
   Shifts delta{};
-  for (int k = 0; k < 4; ++k)
-    if (t.b[k] > 0)
-      for (int j = 0; j < kShifts; ++j) delta[j] += t.b[k] * shift_[j].data()[t.pixel[k]];
+  for (int k = 0; k < 4; ++k) {
+    if (!(t.b[k] > 0)) continue;
+    const Shares& share = share_.data()[t.pixel[k]];
+    for (int j = 0; j < kShifts; ++j)
+      if (share[j] != 0) delta[j] += t.b[k] * (share[j] / kShareSteps) * difference(t.pixel[k], j + 1);
+  }
   return delta;
 }
 
-template <class InnovationAt, class RegimeAt>
+template <class InnovationAt, class RegimeAt, class DifferenceAt>
 void Validation::update(const ValidationParameters& p, core::In<Taps> taps, const InnovationAt& innovation,
-                        const RegimeAt& regime) {
+                        const RegimeAt& regime, const DifferenceAt& difference) {
   core::forEachTile(
       taps.width, taps.height,
       [&](int x0, int y0, int x1, int y1) {
@@ -138,7 +151,7 @@ void Validation::update(const ValidationParameters& p, core::In<Taps> taps, cons
             regime_(x, y) = regime(x, y);
             const Innovation r = innovation(x, y);
             if (r.weight > 0 && taps(x, y).valid())
-              fresh[static_cast<std::size_t>(regime_(x, y))].add(r, gathered(taps(x, y)));
+              fresh[static_cast<std::size_t>(regime_(x, y))].add(r, gathered(taps(x, y), difference));
           }
         TileEvidence& kept = evidence_(x0 / kTile, y0 / kTile);
         for (int c = 0; c < kRegimes; ++c) {

@@ -1,0 +1,163 @@
+// The stored form of histories: what packing rounds, that it neither stalls nor drifts, and what it costs in bytes.
+#include "twohistory/packed_ledger.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/bfloat16.h"
+#include "tests/schedule.h"
+#include "tests/synthetic.h"
+
+namespace {
+
+using core::Bfloat16;
+using twohistory::ditherOf;
+using twohistory::Forgetting;
+using twohistory::Ledger;
+using twohistory::PackedLedger;
+using twohistory::Policy;
+using twohistory::Weighting;
+namespace small_float = twohistory::small_float;
+
+const Policy kU{Weighting::frames, Forgetting::decay, 0.95}, kW{Weighting::samples, Forgetting::decay, 0.95},
+    kF{Weighting::samples, Forgetting::decay, 0.8};
+
+TEST(SmallFloat, EveryCodeReturnsWhateverTheRounding) {
+  for (std::uint32_t code = 0; code <= small_float::kMost; ++code)
+    for (const std::uint32_t dither : {0u, 1u, 4096u, 8191u})
+      ASSERT_EQ(small_float::pack(small_float::unpack(static_cast<std::uint16_t>(code)), dither), code);
+}
+
+TEST(SmallFloat, RoundsUpInProportionToWhatIsMissing) {
+  for (const float x : {1.0001f, 0.33333f, 1234.5678f, 3e-7f}) {
+    double sum = 0;
+    for (std::uint32_t dither = 0; dither < 8192; ++dither) sum += small_float::unpack(small_float::pack(x, dither));
+    EXPECT_NEAR(sum / 8192 / x, 1, 3e-6) << x;
+  }
+  EXPECT_GT(std::abs(small_float::unpack(small_float::pack(0.33333f, 0)) / 0.33333f - 1), 3e-6);  // control: one alone
+}
+
+TEST(SmallFloat, SaturatesAndNeverLosesAPositiveNumber) {
+  EXPECT_EQ(small_float::pack(0, 8191), 0);
+  EXPECT_EQ(small_float::pack(1e-45f, 0), 1);
+  EXPECT_EQ(small_float::pack(1e30f, 8191), small_float::kMost);
+  EXPECT_EQ(small_float::pack(core::kInfinity, 8191), small_float::kMost);
+}
+
+TEST(Bfloat16, RoundsToNearestAndStaysFinite) {
+  for (const float x : {0.0f, -0.0f, 1.0f, -1.5f, 0x1p-126f, 0x1p100f}) EXPECT_EQ(Bfloat16(x), x);
+  core::Rng rng(1, core::Pass::other, 0, 0);
+  for (int i = 0; i < 100'000; ++i) {
+    const float x = std::ldexp(rng.uniform() - 0.5f, static_cast<int>(rng.below(200)) - 100);
+    ASSERT_LE(std::abs(Bfloat16(x) - x), std::abs(x) * 0x1p-8f);
+  }
+  const float most = std::numeric_limits<float>::max();
+  EXPECT_TRUE(std::isfinite(Bfloat16(most)));
+  EXPECT_TRUE(std::isfinite(Bfloat16(-most)));
+  EXPECT_TRUE(std::isnan(Bfloat16(std::bit_cast<float>(0x7f800001u))));
+}
+
+/// Runs packed and float ledgers side by side; `dithered` as stored, else always rounded to nearest.
+template <int K>
+struct SideBySide {
+  Ledger<K> exact, packed;
+  void step(const twohistory::Policies<K>& p, float n, std::uint32_t frame, bool dithered = true) {
+    exact = advance(exact, p, n);
+    packed = PackedLedger<K>(advance(packed, p, n), dithered ? ditherOf(7, frame) : 4096);
+  }
+};
+
+TEST(PackedLedger, StaysWithinItsRoundingOverRandomSchedules) {
+  core::Rng rng(2, core::Pass::other, 0, 0);
+  SideBySide<3> s;
+  double worst = 0, sum = 0;
+  constexpr std::uint32_t kFrames = 100'000;
+  int count = 8;
+  for (std::uint32_t i = 0; i < kFrames; ++i) {
+    if (rng.below(20) == 0) count = std::array{0, 1, 8, 64, 4096, 3}[rng.below(6)];
+    s.step({kU, kW, kF}, static_cast<float>(count), i);
+    if (s.exact.weight[2] < 0x1p-40f * s.exact.weight[0]) continue;  // saturates, as documented
+    for (int g = 0; g < 3; ++g) {
+      worst = std::max<double>(worst, std::abs(s.packed.weight[g] / s.exact.weight[g] - 1));
+      for (int h = g; h < 3; ++h) {
+        const double error = s.packed.covariance(g, h) / s.exact.covariance(g, h) - 1;
+        worst = std::max(worst, std::abs(error)), sum += error;
+      }
+    }
+  }
+  EXPECT_LT(worst, 0.015);  // a step rounds by 2^-10 at most; recursions add some up
+  EXPECT_LT(std::abs(sum / kFrames / 6), 2e-4);
+}
+
+TEST(PackedLedger, ArrivesWhereRoundingToNearestStalls) {
+  for (const bool dithered : {true, false}) {
+    SideBySide<2> s;
+    const Policy slow{Weighting::frames, Forgetting::decay, 0.98}, other{Weighting::samples, Forgetting::decay, 0.9};
+    double sum = 0;
+    for (std::uint32_t i = 0; i < 10'000; ++i) {
+      s.step({slow, other}, i < 500 ? 8.0f : 1.0f, i, dithered);
+      if (i >= 2000) sum += s.packed.weight[1] / s.exact.weight[1] - 1;
+    }
+    if (dithered)
+      EXPECT_LT(std::abs(sum / 8000), 3e-4);
+    else
+      EXPECT_GT(std::abs(sum / 8000), 1e-3);  // control
+  }
+}
+
+TEST(PackedLedger, EmptyHistoriesStayEmpty) {
+  Ledger<2> l;
+  EXPECT_EQ(Ledger<2>(PackedLedger<2>(l, 5)).weight[0], 0);
+  l = advance(l, {Policy{Weighting::frames, Forgetting::decay, 0}, kW}, 4.0f);
+  l = advance(l, {Policy{Weighting::frames, Forgetting::decay, 0}, kW}, 0.0f);  // history 0 forgets all, 1 does not
+  const Ledger<2> back = PackedLedger<2>(l, 5);
+  EXPECT_EQ(back.weight[0], 0);
+  EXPECT_NEAR(back.weight[1], l.weight[1], 2e-3f * l.weight[1]);
+  EXPECT_NEAR(back.covariance(1, 1), l.covariance(1, 1), 2e-3f * l.covariance(1, 1));
+}
+
+TEST(PackedLedger, HasNoSpareBytes) {
+  EXPECT_EQ(sizeof(PackedLedger<1>), 8u);
+  EXPECT_EQ(sizeof(PackedLedger<2>), 16u);
+  EXPECT_EQ(sizeof(PackedLedger<3>), 26u);
+}
+
+TEST(Differences, OfHistoriesDoNotStall) {
+  // A step up: the slow history follows the fast one; their stored difference must vanish with it.
+  float fast = 0;
+  Bfloat16 stored = 0;
+  for (int i = 0; i < 10'000; ++i) {
+    const float slow = fast + stored;
+    fast += 0.2f * (1 - fast);
+    stored = slow + 0.05f * (1 - slow) - fast;
+  }
+  EXPECT_NEAR(fast + stored, 1, 1e-5f);
+  Bfloat16 naive = 0;  // control: the history itself in two bytes
+  for (int i = 0; i < 10'000; ++i) naive = naive + 0.05f * (1 - naive);
+  EXPECT_GT(std::abs(naive - 1), 0.01f);
+}
+
+/// Bytes a pixel that a variant keeps beyond one history, after some frames.
+double extraBytes(const char* name) {
+  constexpr int kSide = 256;
+  const auto bytes = [](const char* which) {
+    const experiments::Variant v = experiments::variantByName(which);
+    tests::Synthetic input(
+        kSide, kSide, 1, [](int, int, int) { return core::vec3(1); }, [](int x, int, int) { return x < 90 ? 8 : 1; });
+    experiments::FilterState state(v, kSide, kSide);
+    core::Planes out(kSide, kSide);
+    for (int i = 0; i < 2; ++i) filter(input.frame(i), v, {}, state, out);
+    return static_cast<double>(state.bytes());
+  };
+  return (bytes(name) - bytes("unweighted")) / (kSide * kSide);
+}
+
+TEST(Memory, OfMoreHistoriesStaysWithinItsBudget) {
+  for (const char* pair : {"optimal", "consistent", "lag-uw"}) EXPECT_LE(extraBytes(pair), 32) << pair;
+  EXPECT_LE(extraBytes("lag-wf"), 48);
+  EXPECT_LE(extraBytes("lag-checked"), 64);
+  EXPECT_GT(extraBytes("seed"), 48);  // control: its gradient alone is 36
+}
+
+}  // namespace

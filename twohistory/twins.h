@@ -1,0 +1,134 @@
+// Where counts have been constant since the reset, a history that weights samples is the one that weights frames: their
+// weights differ by a power of two, and every bit of both is the same. Such pixels are twins. They are recognised by
+// what is stored, cost what one history costs, and mark their tiles, whose second history filters and blends skip.
+#pragma once
+
+#include "twohistory/history.h"
+#include "twohistory/history_view.h"
+#include "twohistory/packed_ledger.h"
+
+namespace twohistory {
+
+/// One flag a tile: every pixel's second history is its first.
+class TwinTiles {
+ public:
+  static constexpr int kSide = 16;  ///< pixels
+
+  TwinTiles() = default;
+  TwinTiles(int width, int height) : tiles_((width + kSide - 1) / kSide, (height + kSide - 1) / kSide, 0) {}
+
+  bool empty() const { return tiles_.empty(); }
+  std::size_t bytes() const { return tiles_.bytes(); }
+  std::uint8_t& of(int x, int y) { return tiles_(x / kSide, y / kSide); }
+  bool at(int x, int y) const { return tiles_(x / kSide, y / kSide) != 0; }
+  /// Whether all of [x0, x1) x [y0, y1), as far as it lies within the image, are twins.
+  bool all(int x0, int y0, int x1, int y1) const {
+    for (int j = std::max(y0, 0) / kSide; j <= std::min((y1 - 1) / kSide, tiles_.height() - 1); ++j)
+      for (int i = std::max(x0, 0) / kSide; i <= std::min((x1 - 1) / kSide, tiles_.width() - 1); ++i)
+        if (!tiles_(i, j)) return false;
+    return true;
+  }
+  /// Narrows [x0, x1) of row y to what is not twins within `reach` pixels; empty (x0 >= x1) where nothing is left.
+  void narrow(int y, int reach, int& x0, int& x1) const {
+    const int step = kSide;
+    while (x0 < x1 && all(x0 - reach, y - reach, std::min(nextTile(x0, step), x1) + reach, y + reach + 1))
+      x0 = std::min(nextTile(x0, step), x1);
+    while (x0 < x1 && all(lastTile(x1, step) - reach, y - reach, x1 + reach, y + reach + 1))
+      x1 = std::max(lastTile(x1, step), x0);
+  }
+
+ private:
+  static int nextTile(int x, int step) { return (x / step + 1) * step; }
+  static int lastTile(int x, int step) { return (x - 1) / step * step; }
+  core::Image<std::uint8_t> tiles_;
+};
+
+/// Whether the pair can have twins: frames and samples, with one decay that keeps weights far from any cap.
+inline bool canBeTwins(const Policies<2>& p) {
+  const auto decays = [](const Policy& q) { return q.forgetting == Forgetting::decay && q.amount <= 0.999; };
+  return p[0].weighting == Weighting::frames && p[1].weighting == Weighting::samples && decays(p[0]) && decays(p[1]) &&
+         p[0].amount == p[1].amount;
+}
+
+/// The common ratio of twins under all taps, or 0: then they do not stay twins for certain.
+inline std::uint16_t twinRatio(const Taps& taps, In<PackedLedger<2>> before, float n) {
+  std::uint16_t ratio = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (!(taps.b[k] > 0)) continue;
+    const PackedLedger<2>& tap = before.at(taps.pixel[k]);
+    if (!tap.isTwin() || !small_float::isPowerOfTwo(tap.ratioCode())) return 0;
+    if (ratio != 0 && tap.ratioCode() != ratio) return 0;
+    ratio = tap.ratioCode();
+  }
+  constexpr float kMost = 4096;  // heavier weights than 4096 / (1 - 0.999) would be capped
+  return n == 0 || (small_float::unpack(ratio) == n && n <= kMost) ? ratio : std::uint16_t{0};
+}
+
+/// accumulateInto for the slides' pair, with the second history skipped where it is the first.
+template <class M, class Fresh>
+class TwinAccumulation {
+ public:
+  In<Taps> taps;
+  In<float> n;
+  const Policies<2>& policies;
+  LedgerView<2> before;
+  LedgerSink<2> now;
+  const M& merge;
+  std::array<HistoryView, 2> valueBefore;
+  const Fresh& fresh;
+  std::array<HistorySink, 2> valueNow;
+
+  /// twins: on entry what the planes of valueNow still hold from the last frame, on return what they hold now.
+  void run(TwinTiles& twins) const {
+    core::forEachTile(
+        n.width, n.height,
+        [&](int x0, int y0, int x1, int y1) {
+          std::uint8_t& flag = twins.of(x0, y0);
+          const bool isZero = flag != 0;  // then the differences need no writing
+          bool all = true;
+          for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) {
+              const std::uint16_t ratio = twinRatio(taps(x, y), before.packed, n(x, y));
+              if (ratio == 0)
+                all &= stepBoth(x, y);
+              else
+                stepTwin(x, y, ratio, isZero);
+            }
+          flag = all;
+        },
+        TwinTiles::kSide);
+  }
+
+ private:
+  /// History 0 as if it were alone.
+  struct First {
+    In<PackedLedger<2>> packed;
+    Ledger<1> at(std::ptrdiff_t i) const { return packed.at(i).first(); }
+  };
+
+  void stepTwin(int x, int y, std::uint16_t ratio, bool isZero) const {
+    const First first{before.packed};
+    const Recall<1, First> recall(taps(x, y), first, {policies[0]}, n(x, y));
+    now.packed(x, y) = PackedLedger<2>::twin(recall.now, ratio, now.dither(x, y));
+    const Step step = recall.step(0, {x, y});
+    valueNow[0].store(x, y, merge.merge(merge.gather(valueBefore[0], step), fresh.load(x, y), step));
+    if (!isZero) valueNow[1].difference.store(x, y, core::vec3(0));
+  }
+
+  /// Returns whether the pixel has become a twin.
+  bool stepBoth(int x, int y) const {
+    const Recall<2, LedgerView<2>> recall(taps(x, y), before, policies, n(x, y));
+    for (int j = 0; j < 2; ++j) {
+      const Step step = recall.step(j, {x, y});
+      valueNow[j].store(x, y, merge.merge(merge.gather(valueBefore[j], step), fresh.load(x, y), step));
+    }
+    now.store(x, y, recall.now);
+    PackedLedger<2>& ledger = now.packed(x, y);
+    const core::vec3 d = valueNow[1].difference.load(x, y);
+    const bool twin = d == core::vec3(0) && ledger.couldBeTwin();
+    if (twin) ledger.markTwin();
+    return twin;
+  }
+};
+
+}  // namespace twohistory
