@@ -25,6 +25,8 @@ std::string metricMeaning(const std::string& name) {
        "structural similarity (Gaussian window 11x11, sigma 1.5) on x / (1 + x) with the sRGB curve, 5-pixel "
        "border left out. Higher is better, 1 is equal"},
       {"energy_ratio", "mean luminance over that of the reference. 1 is right"},
+      {"clamped_energy", "luminance that the firefly clamp took away, as a share of the unfiltered frames'"},
+      {"bytes_per_pixel", "memory that a variant keeps or reuses between frames"},
       {"energy_over_raw", "mean luminance over that of the unfiltered frame, both over the whole sequence. 1 is right"},
       {"MSE", "mean of (y - r1)(y - r2). Lower is better"},
       {"bias", "mean of y - r. 0 is right"},

@@ -105,7 +105,6 @@ template <int K>
 void filterFrame(const Shaded& frame, const Variant& v, PlanesView<const float> target, svgf::FilterState<K>& s,
                  twohistory::GradientState& gradient, twohistory::Validation& validation, svgf::LevelBuffers& levels,
                  core::ImageView<float> weight, PassTimes& t, PlanesView<float> out) {
-  s.swapFrames();
   timed(t, "accumulate", [&] { svgf::accumulate<K>(v.filter, policiesOf<K>(v), frame.taps, frame.radiance, s); });
   if (usesGradient(v.blend.mode)) {
     timed(t, "gradient", [&] {
@@ -154,7 +153,15 @@ void filter(const Shaded& frame, const Variant& variant, PlanesView<const float>
   std::visit(
       [&](auto& s) {
         state.badPixels_ += svgf::dropBadSamples(frame.radiance, frame.samples, s.samples);
-        filterFrame(frame, variant, target, s, state.gradient_, state.validation_, state.levels_, state.weight_,
+        s.swapFrames();
+        Shaded input = frame;
+        if (variant.filter.fireflyClamp > 0) {
+          timed(state.times_, "clamp", [&] {
+            state.clampedEnergy_ += svgf::clampFireflies(variant.filter, frame.taps, frame.radiance, frame.albedo, s);
+          });
+          input.radiance = s.clamped;
+        }
+        filterFrame(input, variant, target, s, state.gradient_, state.validation_, state.levels_, state.weight_,
                     state.times_, out);
       },
       state.histories_);

@@ -77,6 +77,8 @@ class FilterState {
   std::int64_t badPixels() const { return badPixels_; }
   /// Weight of the blend's first history in the last frame.
   core::In<float> blendWeight() const { return weight_; }
+  /// Luminance that the firefly clamp took away, summed over pixels and frames.
+  double clampedEnergy() const { return clampedEnergy_; }
   /// Of everything that is kept or reused between frames.
   std::size_t bytes() const;
 
@@ -89,6 +91,7 @@ class FilterState {
   svgf::LevelBuffers levels_;
   core::Image<float> weight_;
   std::int64_t badPixels_ = 0;
+  double clampedEnergy_ = 0;
   PassTimes times_;
 };
 

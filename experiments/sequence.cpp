@@ -105,12 +105,21 @@ class Sequence {
     for (const auto& [pass, ms] : times.sums()) result_.passes.push_back({scene_, variant, pass, ms / frames});
   }
 
+  double bytesPerPixel(const FilterState& filter) const {
+    return static_cast<double>(filter.bytes()) / config_.width / config_.height;
+  }
+
   void finish() {
     addPasses("shared", shading_.times());
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       addPasses(variants_[v].name, filters_[v]->times());
       result_.rows.push_back(
           {scene_, variants_[v].name, seed_, "full", "energy_over_raw", energy_[v + 1] / energy_[0]});
+      if (variants_[v].filter.fireflyClamp > 0)
+        result_.rows.push_back(
+            {scene_, variants_[v].name, seed_, "full", "clamped_energy", filters_[v]->clampedEnergy() / energy_[0]});
+      result_.rows.push_back(
+          {scene_, variants_[v].name, seed_, "full", "bytes_per_pixel", bytesPerPixel(*filters_[v])});
       result_.badPixels = std::max(result_.badPixels, filters_[v]->badPixels());
     }
     result_.badPixels += shading_.badPixels();

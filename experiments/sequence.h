@@ -26,7 +26,8 @@ struct SequenceHooks {
 };
 
 /// What a sequence measured. Series: relMSE, SSIM and energy ratio by frame, variant and region; rows: sums over all
-/// frames that have no per-frame value (energy_over_raw). The variant "raw" is the unfiltered frame.
+/// frames that have no per-frame value (energy_over_raw, clamped_energy, bytes_per_pixel). The variant "raw" is the
+/// unfiltered frame.
 struct SequenceResult {
   std::vector<Row> rows;
   std::vector<FrameValue> series;

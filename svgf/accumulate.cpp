@@ -51,6 +51,7 @@ template <int K>
 std::size_t FilterState<K>::bytes() const {
   std::size_t sum = history.bytes() + accumulated.bytes() + twins.bytes() + accumulatedTwins.bytes();
   for (int i = 0; i < 2; ++i) sum += ledger[i].bytes() + momentsLedger[i].bytes() + moments[i].bytes();
+  sum += clamped.bytes();
   for (const Image<float>* image : {&samples, &sampleVariance, &variance, &filteredVariance, &luminance, &tolerance})
     sum += image->bytes();
   return sum;
@@ -65,6 +66,34 @@ std::int64_t dropBadSamples(PlanesView<const float> radiance, In<float> n, Image
     out(x, y) = good ? count : 0.0f;
     return good ? 0.0 : 1.0;
   }));
+}
+
+// [clamp]
+template <int K>
+double clampFireflies(const FilterParameters& parameters, In<Taps> taps, PlanesView<const float> radiance,
+                      PlanesView<const float> albedo, FilterState<K>& s) {
+  if (s.clamped.empty()) s.clamped = Planes(taps.width, taps.height);
+  const PlanesView<float> out = s.clamped;
+  const LedgerView<1> ledgers = s.momentsLedger[1 - s.now];
+  const In<Moments> before = s.moments[1 - s.now];
+  const twohistory::Policy keep{twohistory::Weighting::frames, twohistory::Forgetting::none, 0};
+  const std::int64_t width = taps.width;
+  return core::deterministicSum(width * taps.height, [&](std::int64_t i) {
+    const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
+    const vec3 colour = radiance.load(x, y);
+    const float n = s.samples(x, y), luminance = core::luminance(colour);
+    out.store(x, y, colour);
+    if (!(n > 0) || !(luminance > 0)) return 0.0;
+    const twohistory::Recall<1, LedgerView<1>> recall(taps(x, y), ledgers, {keep}, n);
+    const Moments m = MomentsMerge{}.gather(before, recall.step(0, {x, y}));
+    if (m.innovations < parameters.spatialBelow) return 0.0;
+    const float deviation = std::sqrt(m.sampleVariance * (1 / n + recall.gathered.covariance(0, 0)));
+    const float limit = m.mean + parameters.fireflyClamp * deviation;
+    if (!(luminance > limit)) return 0.0;
+    const vec3 kept = limit / luminance * colour;
+    out.store(x, y, kept);
+    return static_cast<double>(core::luminance((colour - kept) * albedo.load(x, y)));
+  });
 }
 
 template <int K>
@@ -82,7 +111,9 @@ void accumulate(const FilterParameters& parameters, const std::array<twohistory:
 #define INSTANTIATE(K)                                                                                     \
   template struct FilterState<K>;                                                                          \
   template void accumulate<K>(const FilterParameters&, const std::array<twohistory::Policy, K>&, In<Taps>, \
-                              PlanesView<const float>, FilterState<K>&);
+                              PlanesView<const float>, FilterState<K>&);                                   \
+  template double clampFireflies<K>(const FilterParameters&, In<Taps>, PlanesView<const float>,            \
+                                    PlanesView<const float>, FilterState<K>&);
 INSTANTIATE(1)
 INSTANTIATE(2)
 INSTANTIATE(3)

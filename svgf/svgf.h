@@ -36,6 +36,7 @@ struct FilterParameters {
   float momentsDecay = 0.95f;  ///< of the luminance mean that innovations are measured against
   float spatialBelow = 4;      ///< fewer innovations than this: variance from the neighbourhood
   int spatialRadius = 3;       ///< of that neighbourhood, pixels
+  float fireflyClamp = 0;      ///< k: luminance at most m + k sigma, 0 = off; takes energy away, and says how much
   bool skipTwins = true;       ///< work on one history where the second is the same; changes no bit
 };
 
@@ -48,6 +49,8 @@ void describe(V& v, FilterParameters& p) {
   v("momentsDecay", p.momentsDecay, "decay a frame of the luminance mean that variance is measured against", 0.1, 1.0);
   v("spatialBelow", p.spatialBelow, "innovations below which variance comes from the neighbourhood", 1.0, 20.0);
   v("spatialRadius", p.spatialRadius, "radius of that neighbourhood in pixels", 1.0, 8.0);
+  v("fireflyClamp", p.fireflyClamp, "standard deviations above its mean that a fresh luminance may lie, 0 = any", 0.0,
+    1e6);
   v("skipTwins", p.skipTwins, "work on one history where the second is the same; changes no bit");
 }
 
@@ -68,6 +71,7 @@ struct FilterState {
   Image<float> sampleVariance;                    ///< s2 a pixel
   Image<float> variance, filteredVariance;        ///< of history 0's luminance, before and after a level
   Image<float> luminance, tolerance;              ///< what the luminance edge weight reads
+  Planes clamped;                                 ///< radiance without fireflies; empty unless they are clamped
 
   void swapFrames() { now = 1 - now, ++frame; }
   Ledger<K> ledgerAt(int x, int y) const { return ledger[now](x, y); }
@@ -77,6 +81,13 @@ struct FilterState {
 /// Copies sample counts, with 0 where radiance is not finite: such a pixel is a frame without samples.
 /// Returns how many pixels were dropped.
 std::int64_t dropBadSamples(PlanesView<const float> radiance, In<float> n, ImageView<float> out);
+
+/// [clamp] Copies radiance with its luminance at most m + k sqrt(s2 (1/n + V)): m, s2 the gathered moments, V the
+/// variance of m, once s2 has seen `spatialBelow` innovations. Returns the luminance taken away, times albedo's,
+/// summed. A change of the light is clamped too, but widens s2, so that it is through after some frames.
+template <int K>
+double clampFireflies(const FilterParameters& parameters, In<Taps> taps, PlanesView<const float> radiance,
+                      PlanesView<const float> albedo, FilterState<K>& state);
 
 /// Carries all K colour histories and the moments through one frame (the temporal filter).
 template <int K>

@@ -6,6 +6,8 @@
 //   E[x^2] - m^2                       filter_test (InnovationsSurviveWhereSquaresCancel)
 //   variance floors, radiance scales   filter_test (IsInvariantToRadianceScale)
 //   not finite input                   filter_test (TreatsNotFiniteRadianceAsAFrameWithoutSamples), and below
+//   firefly                            Fireflies, below
+//   half storage, memory               packed_ledger_test
 //   reset                              history_test, history_properties_test (AResetIsAFreshStart)
 #include <gtest/gtest.h>
 
@@ -141,6 +143,54 @@ TEST(Denormals, LeaveBlendsFiniteAndInRange) {
     EXPECT_TRUE(p >= 0 && p <= 1);
     EXPECT_TRUE(std::isfinite(lagWeight(c, 19.0f, 4.0f, scale)));
   }
+}
+
+/// Frames of a grey wall with one firefly; luminance of its pixel by frame.
+std::vector<float> fireflyFades(float clamp, double* clamped = nullptr) {
+  constexpr int kSide = 8, kAt = 30, kFrames = 400;
+  experiments::Variant v = experiments::variantByName("unweighted");
+  v.filter.levels = 0, v.filter.fireflyClamp = clamp;
+  tests::Synthetic input(
+      kSide, kSide, 40, [](int, int, int) { return core::vec3(1); }, [](int, int, int) { return 1; }, 16);
+  experiments::FilterState state(v, kSide, kSide);
+  core::Planes out(kSide, kSide);
+  std::vector<float> fades;
+  for (int i = 0; i < kFrames; ++i) {
+    const experiments::Shaded frame = input.frame(i);
+    if (i == kAt) input.radiance().view().store(3, 3, core::vec3(1e6f));
+    filter(frame, v, {}, state, out);
+    fades.push_back(core::luminance(out.view().load(3, 3)));
+  }
+  if (clamped) *clamped = state.clampedEnergy();
+  return fades;
+}
+
+TEST(Fireflies, FadeForHundredsOfFramesUnlessTheyAreClampedAndTheirEnergyIsCounted) {
+  const std::vector<float> naive = fireflyFades(0);
+  EXPECT_GT(naive[30 + 200], 2);  // 0.05 x 1e6 x 0.95^200 = 1.7 above the truth
+  double clamped = 0;
+  const std::vector<float> ours = fireflyFades(8, &clamped);
+  EXPECT_NEAR(ours[31], 1, 0.5f);
+  EXPECT_NEAR(clamped, 1e6, 0.01e6);
+}
+
+TEST(Fireflies, ClampLetsAChangeOfTheLightThroughAndTakesLittleOfPlainNoise) {
+  experiments::Variant v = experiments::variantByName("unweighted");
+  v.filter.fireflyClamp = 8;
+  double energy = 0;
+  tests::Synthetic input(
+      32, 32, 41, [&](int, int, int f) { return core::vec3(f < 40 ? 1.0f : 100.0f); }, [](int, int, int) { return 1; });
+  experiments::FilterState state(v, 32, 32);
+  core::Planes out(32, 32);
+  for (int i = 0; i < 120; ++i) {
+    filter(input.frame(i), v, {}, state, out);
+    if (i == 39) energy = state.clampedEnergy();
+  }
+  EXPECT_LT(energy / (40 * 32 * 32), 5e-3);  // exponential noise
+  double mean = 0;
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) mean += core::luminance(out.view().load(x, y)) / (32 * 32);
+  EXPECT_NEAR(mean, 100, 5);
 }
 
 }  // namespace

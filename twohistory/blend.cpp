@@ -205,10 +205,11 @@ Weights<K> ownWeights(const Histories<K>& h, const Ledger<K>& ledger, const Blen
 
 template <int K>
 void blendByPixel(const Histories<K>& h, const BlendParameters& p, const TwinTiles* twins, const Sink<K>& sink) {
+  const bool onlyFirst = p.mode == BlendMode::first && p.pair[0] == 0 && !p.validation.on;
   core::forEachTile(
       h.variance.width, h.variance.height,
       [&](int x0, int y0, int x1, int y1) {
-        const bool same = twins && twins->at(x0, y0);
+        const bool same = onlyFirst || (twins && twins->at(x0, y0));
         for (int y = y0; y < y1; ++y)
           for (int x = x0; x < x1; ++x) {
             if (same) {
