@@ -40,7 +40,9 @@ const std::vector<Sequence>& sequences() {
       {"moving_fovea", [](int x, int y, int f) { return insideFovea(x - f, y) ? 8 : 1; }, {1, 0}},
       {"disocclusion", [](int, int, int) { return 2; }, {0, 0}, 9},
       {"bad_input", [](int, int, int) { return 2; }, {0, 0}, -1, 7},
-      {"many", [](int x, int, int) { return x == 20 ? 4096 : x == 60 ? 8192 : 16; }}};
+      {"many", [](int x, int, int) { return x == 20   ? 4096
+                                            : x == 60 ? 8192
+                                                      : 16; }}};
   return all;
 }
 

@@ -40,42 +40,48 @@ concept Merge = requires(const M& m, const Before& before, const Value& old, con
 };
 
 /// Premultiplied tap weights b_k W_k / sum b W: means whose weights differ mix in proportion to what they stand for.
-/// Taps that are all empty keep their bilinear weights, so that a value outlives its weight.
-template <int K, class Ledgers>
-Taps premultiplied(const Taps& taps, const Ledgers& before, int j) {
+/// Taps that are all empty keep their bilinear weights, so that a value outlives its weight. weightOf(k): W at tap k.
+template <class WeightOf>
+Taps premultipliedBy(const Taps& taps, const WeightOf& weightOf) {
   Taps result = taps;
   float sum = 0;
-  for (int k = 0; k < 4; ++k) {
-    if (!(taps.b[k] > 0)) continue;
-    const Ledger<K>& tap = before.at(taps.pixel[k]);
-    sum += result.b[k] = taps.b[k] * tap.weight[j];
-  }
+  for (int k = 0; k < 4; ++k)
+    if (taps.b[k] > 0) sum += result.b[k] = taps.b[k] * weightOf(k);
   if (!(sum > 0)) return taps;
   for (float& b : result.b) b /= sum;
   return result;
 }
 
-/// All that one pixel's histories do in one frame, before any value is touched. Ledgers: anything whose at(index) is or
-/// becomes a Ledger<K>.
 template <int K, class Ledgers>
+Taps premultiplied(const Taps& taps, const Ledgers& before, int j) {
+  return premultipliedBy(taps, [&](int k) { return Ledger<K>(before.at(taps.pixel[k])).weight[j]; });
+}
+
+/// All that one pixel's histories do in one frame, before any value is touched.
+template <int K>
 struct Recall {
-  const Taps& taps;
-  const Ledgers& before;
+  Taps taps;
   float samples;
+  std::array<Ledger<K>, 4> tap;  ///< what the taps know, read once; only where b > 0
   Ledger<K> gathered, now;
   Advance<K> change;
 
-  Recall(const Taps& t, const Ledgers& ledgers, const Policies<K>& policies, float n)
-      : taps(t),
-        before(ledgers),
-        samples(n),
-        gathered(gatherFrom<K, float>(t, ledgers)),
-        change(advanceOf(gathered, policies, n)) {
+  /// before: anything whose at(index) is or becomes a Ledger<K>.
+  template <class Ledgers>
+  Recall(const Taps& t, const Ledgers& before, const Policies<K>& policies, float n) : taps(t), samples(n) {
+    for (int k = 0; k < 4; ++k)
+      if (t.b[k] > 0) tap[k] = before.at(t.pixel[k]);
+    gathered = gatherFrom<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
+    change = advanceOf(gathered, policies, n);
     now = advance(gathered, change, n);
   }
   Step step(int j, core::ivec2 pixel) const {
-    return {pixel,   premultiplied<K>(taps, before, j), change.factor[j] * gathered.weight[j], change.fresh[j],
-            samples, gathered.covariance(j, j)};
+    return {pixel,
+            premultipliedBy(taps, [&](int k) { return tap[k].weight[j]; }),
+            change.factor[j] * gathered.weight[j],
+            change.fresh[j],
+            samples,
+            gathered.covariance(j, j)};
   }
 };
 
@@ -92,7 +98,7 @@ void accumulateInto(In<Taps> taps, In<float> n, const Policies<K>& policies, con
   core::forEachPixel(
       n.width, n.height,
       [&](int x, int y) {
-        const Recall<K, LedgersBefore> recall(taps(x, y), ledgersBefore, policies, n(x, y));
+        const Recall<K> recall(taps(x, y), ledgersBefore, policies, n(x, y));
         ledgersNow.store(x, y, recall.now);
         for (int j = 0; j < K; ++j) {
           const Step step = recall.step(j, {x, y});

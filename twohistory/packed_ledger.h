@@ -53,12 +53,14 @@ class PackedLedger {
     if (!(reference > 0))  // relative to the heaviest; the sign says that history 0 is empty
       for (int j = 1; j < K; ++j) reference = std::max(reference, l.weight[j]);
     storeWeight(l.weight[0] > 0 ? reference : -reference);
-    for (int j = 1; j < K; ++j)
-      half_[kRatio + j - 1] = small_float::pack(reference > 0 ? l.weight[j] / reference : 0, dither);
-    for (int j = 0; j < K; ++j) half_[kAge + j] = small_float::pack(l.age(j), dither);
-    for (int g = 0; g < K; ++g)
-      for (int h = g; h < K; ++h)
-        half_[kCovariance + pairIndex<K>(g, h)] = small_float::pack(l.covariance(g, h), dither);
+    const float inverseReference = inverse(reference);
+    std::array<float, K> inverses;
+    for (int j = 0; j < K; ++j) inverses[j] = inverse(l.weight[j]);
+    for (int j = 1; j < K; ++j) half_[kRatio + j - 1] = small_float::pack(l.weight[j] * inverseReference, dither);
+    for (int j = 0; j < K; ++j) half_[kAge + j] = small_float::pack(l.ageSum[j] * inverses[j], dither);
+    for (int i = 0, g = 0; g < K; ++g)
+      for (int h = g; h < K; ++h, ++i)  // two steps: the product of two inverses could overflow
+        half_[kCovariance + i] = small_float::pack(l.powerSums[i] * inverses[g] * inverses[h], dither);
   }
 
   operator Ledger<K>() const {
@@ -100,8 +102,9 @@ class PackedLedger {
     PackedLedger p;
     p.storeWeight(first.weight[0]);
     p.half_[kRatio] = ratio;
-    p.half_[kAge] = p.half_[kAge + 1] = small_float::pack(first.age(0), dither);
-    p.half_[kCovariance] = p.half_[kCovariance + 1] = small_float::pack(first.covariance(0, 0), dither);
+    const float scale = inverse(first.weight[0]);
+    p.half_[kAge] = p.half_[kAge + 1] = small_float::pack(first.ageSum[0] * scale, dither);
+    p.half_[kCovariance] = p.half_[kCovariance + 1] = small_float::pack(first.powerSums[0] * scale * scale, dither);
     p.markTwin();
     return p;
   }
@@ -111,6 +114,7 @@ class PackedLedger {
   static constexpr int kRatio = 2, kAge = kRatio + K - 1, kCovariance = kAge + K, kLast = kCovariance + kPairs - 1;
   static constexpr std::uint16_t kTwin = 0xffff;
 
+  static float inverse(float w) { return w > 0 ? 1 / w : 0.0f; }
   void storeWeight(float w) {
     const auto bits = std::bit_cast<std::uint32_t>(w);
     half_[0] = static_cast<std::uint16_t>(bits), half_[1] = static_cast<std::uint16_t>(bits >> 16);

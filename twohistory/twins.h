@@ -108,7 +108,7 @@ class TwinAccumulation {
 
   void stepTwin(int x, int y, std::uint16_t ratio, bool isZero) const {
     const First first{before.packed};
-    const Recall<1, First> recall(taps(x, y), first, {policies[0]}, n(x, y));
+    const Recall<1> recall(taps(x, y), first, {policies[0]}, n(x, y));
     now.packed(x, y) = PackedLedger<2>::twin(recall.now, ratio, now.dither(x, y));
     const Step step = recall.step(0, {x, y});
     valueNow[0].store(x, y, merge.merge(merge.gather(valueBefore[0], step), fresh.load(x, y), step));
@@ -117,7 +117,7 @@ class TwinAccumulation {
 
   /// Returns whether the pixel has become a twin.
   bool stepBoth(int x, int y) const {
-    const Recall<2, LedgerView<2>> recall(taps(x, y), before, policies, n(x, y));
+    const Recall<2> recall(taps(x, y), before, policies, n(x, y));
     for (int j = 0; j < 2; ++j) {
       const Step step = recall.step(j, {x, y});
       valueNow[j].store(x, y, merge.merge(merge.gather(valueBefore[j], step), fresh.load(x, y), step));
