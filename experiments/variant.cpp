@@ -55,6 +55,7 @@ std::vector<Variant> ownLibrary() {
           make("weighted", {w}),
           make("published", {u, w}, BlendMode::published),
           make("optimal", {u, w}, BlendMode::optimal),
+          make("optimal-uwf", {u, w, f}, BlendMode::optimalAll),
           make("seed", {u, w}, BlendMode::seed),
           make("seed-slide", {u, w}, BlendMode::seedSlide),
           make("consistent", {u, w}, BlendMode::consistent),
@@ -111,10 +112,10 @@ void requireConsistent(const Variant& v) {
     if (p.forgetting == Forgetting::decay && p.amount > 1)
       fail("a decay of " + std::to_string(p.amount), "a decay lies in [0, 1]");
   const int count = static_cast<int>(v.histories.size());
-  const bool usesPair = v.blend.mode != BlendMode::first && v.blend.mode != BlendMode::custom;
-  if (v.blend.pair[0] >= count || (usesPair && v.blend.pair[1] >= count))
+  const bool pairs = twohistory::usesPair(v.blend.mode);
+  if (v.blend.pair[0] >= count || (pairs && v.blend.pair[1] >= count))
     fail("its blend names a history that it does not have", "blend.first and blend.second count histories from 0");
-  if (usesPair && v.blend.pair[0] == v.blend.pair[1]) fail("it blends a history with itself", "name two histories");
+  if (pairs && v.blend.pair[0] == v.blend.pair[1]) fail("it blends a history with itself", "name two histories");
 }
 
 }  // namespace experiments

@@ -41,8 +41,8 @@ FilterState<K>::FilterState(int width, int height)
       filteredVariance(width, height),
       luminance(width, height),
       tolerance(width, height) {
-  for (auto& image : ledger) image = Image<PackedLedger<K>>(width, height);
-  for (auto& image : momentsLedger) image = Image<PackedLedger<1>>(width, height);
+  for (auto& image : ledger) image = Image<StoredLedger<K>>(width, height);
+  for (auto& image : momentsLedger) image = Image<StoredLedger<1>>(width, height);
   for (auto& image : moments) image = Image<Moments>(width, height);
   history = accumulated = HistoryColours<K>(width, height);
 }

@@ -78,7 +78,7 @@ TWOFOLD_CLONES void addKernel(const float* __restrict weight, const float* __res
   for (int i = 0; i < count; ++i) sum[i] += weight[i] * value[i];
 }
 
-TWOFOLD_CLONES void addDifferences(const float* __restrict weight, const core::Bfloat16* __restrict value, int count,
+TWOFOLD_CLONES void addDifferences(const float* __restrict weight, const core::Stored* __restrict value, int count,
                                    float* __restrict sum) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) sum[i] += weight[i] * static_cast<float>(value[i]);
@@ -111,14 +111,14 @@ void addTap(const Level& level, const Guide& guide, const Span& span, int dx, in
 
 void writeDifferences(const Level& level, const Span& span, const Sums& s) {
   for (std::size_t c = 0; c < level.differences.size(); ++c) {
-    core::Bfloat16* out = level.differencesOut[c].row(span.y);
-    const core::Bfloat16* in = level.differences[c].row(span.y);
-    std::fill(out + span.x0, out + span.d0, core::Bfloat16(0));
+    core::Stored* out = level.differencesOut[c].row(span.y);
+    const core::Stored* in = level.differences[c].row(span.y);
+    std::fill(out + span.x0, out + span.d0, core::Stored(0));
     for (int x = span.d0; x < span.d1; ++x) {
       const int i = x - span.x0;
-      out[x] = s.weight[i] > 0 ? core::Bfloat16(s.difference[c][i] * (1 / s.weight[i])) : in[x];
+      out[x] = s.weight[i] > 0 ? core::Stored(s.difference[c][i] * (1 / s.weight[i])) : in[x];
     }
-    std::fill(out + std::max(span.d0, span.d1), out + span.x1, core::Bfloat16(0));
+    std::fill(out + std::max(span.d0, span.d1), out + span.x1, core::Stored(0));
   }
 }
 

@@ -25,8 +25,8 @@ struct Level {
   core::ImageView<float> varianceOut;
   core::ImageView<float> luminance;  ///< luminance of the image that guides; filled by the caller
   core::ImageView<float> tolerance;  ///< scratch
-  std::span<const core::In<core::Bfloat16>> differences{};
-  std::span<const core::ImageView<core::Bfloat16>> differencesOut{};
+  std::span<const core::In<core::Stored>> differences{};
+  std::span<const core::ImageView<core::Stored>> differencesOut{};
   const twohistory::TwinTiles* twins = nullptr;  ///< tiles in which all differences are 0; null = none
 };
 

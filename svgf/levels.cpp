@@ -25,7 +25,7 @@ void keepHistories(FilterState<K>& s) {
 
 /// Twins whose neighbours are none are none after a filter of `radius` pixels.
 void updateTwins(FilterState<2>& s, int radius) {
-  Image<PackedLedger<2>>& ledger = s.ledger[s.now];
+  Image<StoredLedger<2>>& ledger = s.ledger[s.now];
   core::forEachTile(
       ledger.width(), ledger.height(),
       [&](int x0, int y0, int x1, int y1) {
@@ -46,11 +46,11 @@ void filterHistories(const FilterParameters& parameters, const Guide& guide, Fil
   if constexpr (K == 2)
     if (hasTwins) updateTwins(s, filters ? kAtrousRadius : 0);
   if (!filters) return keepHistories(s);
-  std::vector<In<core::Bfloat16>> differences;
-  std::vector<ImageView<core::Bfloat16>> differencesOut;
+  std::vector<In<core::Stored>> differences;
+  std::vector<ImageView<core::Stored>> differencesOut;
   for (int j = 0; j < K - 1; ++j) {
-    const PlanesView<const core::Bfloat16> in = s.accumulated.difference[j];
-    const PlanesView<core::Bfloat16> out = s.history.difference[j];
+    const PlanesView<const core::Stored> in = s.accumulated.difference[j];
+    const PlanesView<core::Stored> out = s.history.difference[j];
     differences.insert(differences.end(), in.plane.begin(), in.plane.end());
     differencesOut.insert(differencesOut.end(), out.plane.begin(), out.plane.end());
   }

@@ -26,7 +26,7 @@ using core::PlanesView;
 using twohistory::HistoryColours;
 using twohistory::Ledger;
 using twohistory::LedgerView;
-using twohistory::PackedLedger;
+using twohistory::StoredLedger;
 using twohistory::Taps;
 
 struct FilterParameters {
@@ -61,8 +61,8 @@ struct FilterState {
 
   int now = 0;
   std::uint32_t frame = 0;  ///< how many were begun, for the ledgers' rounding
-  std::array<Image<PackedLedger<K>>, 2> ledger;
-  std::array<Image<PackedLedger<1>>, 2> momentsLedger;
+  std::array<Image<StoredLedger<K>>, 2> ledger;
+  std::array<Image<StoredLedger<1>>, 2> momentsLedger;
   std::array<Image<Moments>, 2> moments;
   HistoryColours<K> history;                      ///< after the first level: fed back, and blended
   HistoryColours<K> accumulated;                  ///< before it

@@ -87,6 +87,37 @@ TEST(LeastVariance, IsInRangeWithoutRegretAndNoWorseThanEitherPart) {
   }
 }
 
+/// Least variance of three histories over a fine grid of weights >= 0: never below the true least.
+double leastOnAGrid(const twohistory::Matrix<3, double>& c) {
+  constexpr int kSteps = 40;
+  double least = 1e300;
+  for (int a = 0; a <= kSteps; ++a)
+    for (int b = 0; a + b <= kSteps; ++b) {
+      const double x = static_cast<double>(a) / kSteps, y = static_cast<double>(b) / kSteps;
+      least = std::min(least, twohistory::varianceOf<3, double>(c, {x, y, 1 - x - y}));
+    }
+  return least;
+}
+
+TEST(LeastVariance, OfThreeHistoriesIsConvexAndNoWorseThanAnyGridOrPart) {
+  bool single = true;  // control: the best single history alone would fail
+  for (std::uint32_t i = 0; i < kSchedules; ++i) {
+    const Schedule s = randomSchedule(i);
+    const auto weights = twohistory::leastVarianceWeights<3, float>(covarianceOf(ledgerOf<float>(s)));
+    ASSERT_TRUE(weights[0] >= 0 && weights[1] >= 0 && weights[2] >= 0) << "schedule " << i;
+    ASSERT_NEAR(weights[0] + weights[1] + weights[2], 1, 1e-6) << "schedule " << i;
+    const auto exact = covarianceOf(ledgerOf<double>(s));
+    const double got = twohistory::varianceOf<3, double>(exact, {weights[0], weights[1], weights[2]});
+    const double part = std::min({exact[0][0], exact[1][1], exact[2][2]});
+    ASSERT_LE(got, part * (1 + 1e-5)) << "schedule " << i;
+    if (i % 20 != 0) continue;
+    const double least = leastOnAGrid(exact);
+    ASSERT_LE(got, least * (1 + 1e-5)) << "schedule " << i;
+    single &= part <= least * (1 + 1e-5);
+  }
+  EXPECT_FALSE(single);
+}
+
 TEST(LeastVariance, ControlTheCancellingQuotientLeavesItsRange) {
   int failures = 0;
   for (std::uint32_t i = 0; i < 1000; ++i) {

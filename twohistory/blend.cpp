@@ -22,15 +22,6 @@ Weights<K> pairWeights(const BlendParameters& p, float first) {
   return w;
 }
 
-/// Variance of sum lambda_j X_j in units of s2.
-template <int K>
-float varianceOf(const Ledger<K>& ledger, const Weights<K>& lambda) {
-  float sum = 0;
-  for (int j = 0; j < K; ++j)
-    for (int k = 0; k < K; ++k) sum += lambda[j] * lambda[k] * ledger.covariance(j, k);
-  return std::max(0.0f, sum);
-}
-
 /// Where and how one pixel's result goes.
 template <int K>
 struct Sink {
@@ -56,7 +47,7 @@ struct Sink {
     for (int j = 1; j < K; ++j)
       if (lambda[j] != 0) sum += lambda[j] * h.colour[j].fromBase(x, y);
     const float own = ledger.covariance(0, 0);
-    const float share = own > 0 ? varianceOf<K>(ledger, lambda) / own : 1.0f;
+    const float share = own > 0 ? varianceOf<K, float>(covarianceOf(ledger), lambda) / own : 1.0f;
     store(x, y, sum, h.variance(x, y) * share, lambda[reported]);
   }
 
@@ -200,6 +191,7 @@ void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendPa
 template <int K>
 Weights<K> ownWeights(const Histories<K>& h, const Ledger<K>& ledger, const BlendParameters& p, int x, int y) {
   if (p.mode == BlendMode::custom) return customWeights(h, ledger, p, x, y);
+  if (p.mode == BlendMode::optimalAll) return leastVarianceWeights<K, float>(covarianceOf(ledger));
   return pairWeights<K>(p, p.mode == BlendMode::first ? 1 : localWeight(h, ledger, p, x, y));
 }
 
@@ -228,9 +220,9 @@ void blendByPixel(const Histories<K>& h, const BlendParameters& p, const TwinTil
 template <int K>
 void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, Validation& validation,
            const BlendScratch& scratch, const Blended& out) {
-  const bool usesPair = p.mode != BlendMode::first && p.mode != BlendMode::custom;
+  const bool pairs = usesPair(p.mode);
   CHECK_LT(p.pair[0], K);
-  if (usesPair) CHECK_LT(p.pair[1], K);
+  if (pairs) CHECK_LT(p.pair[1], K);
   const Sink<K> sink{h, out, p.pair[0], p.validation.on ? &validation : nullptr};
   const TwinTiles* twins = usefulTwins(h.twins, p);
   if (p.mode == BlendMode::lag || p.mode == BlendMode::lagAll || p.mode == BlendMode::consistent)

@@ -17,6 +17,7 @@ enum class BlendMode {
   first,       ///< pair[0] alone ("unweighted" and "weighted" are this with one history)
   published,   ///< p as the slides' headline prints it
   optimal,     ///< p_opt: least variance under constant truth
+  optimalAll,  ///< the same over all K histories, weights >= 0
   seed,        ///< p_opt, then towards pair[0] where the gradient is large, as its author shipped it
   seedSlide,   ///< the same with the slides' gradient
   consistent,  ///< one closed form in place of p and q
@@ -25,6 +26,11 @@ enum class BlendMode {
   custom,      ///< BlendParameters::custom
   oracle,      ///< best p in [0, 1] against the reference; p_opt in frames without one
 };
+
+/// Whether a mode reads BlendParameters::pair beyond its first.
+inline bool usesPair(BlendMode mode) {
+  return mode != BlendMode::first && mode != BlendMode::custom && mode != BlendMode::optimalAll;
+}
 
 /// predicted: from the power sums. safe: the largest of that and two measured ones (spread in the window, spread of
 /// four quadrant means); lagAll then also scales pixel noise by its measured over its predicted variance.
@@ -61,6 +67,7 @@ void describe(V& v, BlendParameters& p) {
            {{"first", BlendMode::first},
             {"published", BlendMode::published},
             {"optimal", BlendMode::optimal},
+            {"optimalAll", BlendMode::optimalAll},
             {"seed", BlendMode::seed},
             {"seedSlide", BlendMode::seedSlide},
             {"consistent", BlendMode::consistent},

@@ -6,7 +6,9 @@
 // regression and the consistent blend are this project's, derived in docs/history.md.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 #include "twohistory/ledger.h"
 
@@ -85,6 +87,24 @@ Real lagWeight(const PairCovariance<Real>& c, Real firstAge, Real secondAge, Rea
 template <int K, class Real>
 using Matrix = std::array<std::array<Real, K>, K>;
 
+/// Covariances of all K histories in units of s2 [ledger 4].
+template <int K, class Real>
+Matrix<K, Real> covarianceOf(const Ledger<K, Real>& ledger) {
+  Matrix<K, Real> c{};
+  for (int j = 0; j < K; ++j)
+    for (int k = 0; k < K; ++k) c[j][k] = ledger.covariance(j, k);
+  return c;
+}
+
+/// lambda' C lambda, never negative through rounding.
+template <int K, class Real>
+Real varianceOf(const Matrix<K, Real>& c, const std::array<Real, K>& lambda) {
+  Real sum = 0;
+  for (int j = 0; j < K; ++j)
+    for (int k = 0; k < K; ++k) sum += lambda[j] * lambda[k] * c[j][k];
+  return std::max(Real(0), sum);
+}
+
 /// x with (m + ridge) x = 1, by Cholesky; m symmetric, positive semi-definite, ridge > 0.
 template <int K, class Real>
 std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
@@ -106,6 +126,23 @@ std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
     for (int i = j + 1; i < K; ++i) x[j] -= l[i][j] * x[i];
     x[j] /= l[j][j];
   }
+  return x;
+}
+
+/// Weights of sum 1 with the least lambda' C lambda among the histories whose bit is set in `subset`; 0 for the others.
+/// Histories that are the same within rounding give weights that may be anything, NaN included.
+template <int K>
+std::array<double, K> subsetWeights(const Matrix<K, double>& c, unsigned subset) {
+  const auto in = [subset](int j) { return (subset >> j & 1u) != 0; };
+  Matrix<K, double> m{};
+  double trace = 0, total = 0;
+  for (int j = 0; j < K; ++j) {
+    for (int k = 0; k < K; ++k) m[j][k] = in(j) && in(k) ? c[j][k] : double(j == k);
+    if (in(j)) trace += c[j][j];
+  }
+  std::array<double, K> x = solveOnes<K, double>(m, 1e-12 * trace);
+  for (int j = 0; j < K; ++j) total += x[j] = in(j) ? x[j] : 0.0;
+  for (double& w : x) w /= total;
   return x;
 }
 
@@ -145,6 +182,28 @@ std::array<Real, K> leastErrorWeights(const Matrix<K, Real>& m, const std::array
   if (!(total > 0)) return lambda;
   for (Real& w : x) w /= total;
   return shrunk<K, Real>(x, best, lowest);
+}
+
+/// [blend opt] for any K: weights >= 0 of sum 1 with the least lambda' C lambda. The optimum is the unconstrained one
+/// of some subset of the histories, so all subsets whose weights are not negative are tried; one history alone always
+/// is. Where several are equal, the one with the earliest histories. Cost 2^K small systems, in double: meant for K
+/// <= 4.
+template <int K, class Real>
+std::array<Real, K> leastVarianceWeights(const Matrix<K, Real>& covariance) {
+  Matrix<K, double> c{};
+  for (int j = 0; j < K; ++j)
+    for (int k = 0; k < K; ++k) c[j][k] = static_cast<double>(covariance[j][k]);
+  std::array<double, K> best{1};
+  double least = c[0][0];
+  for (unsigned subset = 2; subset < 1u << K; ++subset) {
+    const std::array<double, K> x = subsetWeights<K>(c, subset);
+    if (std::any_of(x.begin(), x.end(), [](double w) { return !(w >= 0); })) continue;
+    const double variance = varianceOf<K, double>(c, x);
+    if (variance < least) least = variance, best = x;
+  }
+  std::array<Real, K> result;
+  std::transform(best.begin(), best.end(), result.begin(), [](double w) { return static_cast<Real>(w); });
+  return result;
 }
 
 /// The same for one drift g = G^2 / s2 a frame, M_jk = C_jk + g a_j a_k, and one limit.

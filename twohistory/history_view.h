@@ -2,17 +2,17 @@
 // channel. Differences are small where histories agree, so their rounding is too; and they decay, so they never stall.
 #pragma once
 
-#include "core/bfloat16.h"
 #include "core/image.h"
+#include "core/stored.h"
 
 namespace twohistory {
 
-using Differences = core::PlanesOf<core::Bfloat16>;
+using Differences = core::PlanesOf<core::Stored>;
 
 /// Reads one history.
 struct HistoryView {
-  core::PlanesView<const float> base;                 ///< history 0
-  core::PlanesView<const core::Bfloat16> difference;  ///< from it; empty = history 0 itself
+  core::PlanesView<const float> base;               ///< history 0
+  core::PlanesView<const core::Stored> difference;  ///< from it; empty = history 0 itself
 
   core::vec3 load(int x, int y) const {
     return difference.empty() ? base.load(x, y) : base.load(x, y) + difference.load(x, y);
@@ -25,7 +25,7 @@ struct HistoryView {
 /// Writes one history; history 0 of a pixel goes first.
 struct HistorySink {
   core::PlanesView<float> base;
-  core::PlanesView<core::Bfloat16> difference;
+  core::PlanesView<core::Stored> difference;
 
   void store(int x, int y, const core::vec3& value) const {
     if (difference.empty()) return base.store(x, y, value);

@@ -124,14 +124,41 @@ class PackedLedger {
   std::array<std::uint16_t, kLast + 1> half_{};
 };
 
-/// Reads packed ledgers as ledgers.
+/// A ledger as it is, to compare layouts with (core/stored.h). It knows no twins.
+template <int K>
+class PlainLedger {
+ public:
+  PlainLedger() = default;
+  PlainLedger(const Ledger<K>& l, std::uint32_t) : ledger_(l) {}
+  operator Ledger<K>() const { return ledger_; }
+  Ledger<1> first() const { return {{ledger_.weight[0]}, {ledger_.ageSum[0]}, {ledger_.powerSums[0]}}; }
+  bool isTwin() const { return false; }
+  bool couldBeTwin() const { return false; }
+  std::uint16_t ratioCode() const { return 0; }
+  void markTwin() {}
+  void unmarkTwin() {}
+  static PlainLedger twin(const Ledger<1>&, std::uint16_t, std::uint32_t) { return {}; }  // never asked for
+
+ private:
+  Ledger<K> ledger_;
+};
+
+#ifdef TWOFOLD_FLOAT_LEDGERS
+template <int K>
+using StoredLedger = PlainLedger<K>;
+#else
+template <int K>
+using StoredLedger = PackedLedger<K>;
+#endif
+
+/// Reads stored ledgers as ledgers.
 template <int K>
 struct LedgerView {
-  core::In<PackedLedger<K>> packed;
+  core::In<StoredLedger<K>> packed;
 
   LedgerView() = default;
-  LedgerView(core::In<PackedLedger<K>> image) : packed(image) {}
-  LedgerView(const core::Image<PackedLedger<K>>& image) : packed(image) {}
+  LedgerView(core::In<StoredLedger<K>> image) : packed(image) {}
+  LedgerView(const core::Image<StoredLedger<K>>& image) : packed(image) {}
 
   Ledger<K> operator()(int x, int y) const { return packed(x, y); }
   Ledger<K> at(std::ptrdiff_t i) const { return packed.at(i); }
@@ -139,14 +166,14 @@ struct LedgerView {
   int height() const { return packed.height; }
 };
 
-/// Writes ledgers packed. frame: for the rounding.
+/// Writes ledgers as they are stored. frame: for the rounding.
 template <int K>
 struct LedgerSink {
-  core::ImageView<PackedLedger<K>> packed;
+  core::ImageView<StoredLedger<K>> packed;
   std::uint32_t frame = 0;
 
   std::uint32_t dither(int x, int y) const { return ditherOf(y * packed.pitch + x, frame); }
-  void store(int x, int y, const Ledger<K>& l) const { packed(x, y) = PackedLedger<K>(l, dither(x, y)); }
+  void store(int x, int y, const Ledger<K>& l) const { packed(x, y) = StoredLedger<K>(l, dither(x, y)); }
 };
 
 }  // namespace twohistory

@@ -51,11 +51,11 @@ inline bool canBeTwins(const Policies<2>& p) {
 }
 
 /// The common ratio of twins under all taps, or 0: then they do not stay twins for certain.
-inline std::uint16_t twinRatio(const Taps& taps, In<PackedLedger<2>> before, float n) {
+inline std::uint16_t twinRatio(const Taps& taps, In<StoredLedger<2>> before, float n) {
   std::uint16_t ratio = 0;
   for (int k = 0; k < 4; ++k) {
     if (!(taps.b[k] > 0)) continue;
-    const PackedLedger<2>& tap = before.at(taps.pixel[k]);
+    const StoredLedger<2>& tap = before.at(taps.pixel[k]);
     if (!tap.isTwin() || !small_float::isPowerOfTwo(tap.ratioCode())) return 0;
     if (ratio != 0 && tap.ratioCode() != ratio) return 0;
     ratio = tap.ratioCode();
@@ -102,14 +102,14 @@ class TwinAccumulation {
  private:
   /// History 0 as if it were alone.
   struct First {
-    In<PackedLedger<2>> packed;
+    In<StoredLedger<2>> packed;
     Ledger<1> at(std::ptrdiff_t i) const { return packed.at(i).first(); }
   };
 
   void stepTwin(int x, int y, std::uint16_t ratio, bool isZero) const {
     const First first{before.packed};
     const Recall<1> recall(taps(x, y), first, {policies[0]}, n(x, y));
-    now.packed(x, y) = PackedLedger<2>::twin(recall.now, ratio, now.dither(x, y));
+    now.packed(x, y) = StoredLedger<2>::twin(recall.now, ratio, now.dither(x, y));
     const Step step = recall.step(0, {x, y});
     valueNow[0].store(x, y, merge.merge(merge.gather(valueBefore[0], step), fresh.load(x, y), step));
     if (!isZero) valueNow[1].difference.store(x, y, core::vec3(0));
@@ -123,7 +123,7 @@ class TwinAccumulation {
       valueNow[j].store(x, y, merge.merge(merge.gather(valueBefore[j], step), fresh.load(x, y), step));
     }
     now.store(x, y, recall.now);
-    PackedLedger<2>& ledger = now.packed(x, y);
+    StoredLedger<2>& ledger = now.packed(x, y);
     const core::vec3 d = valueNow[1].difference.load(x, y);
     const bool twin = d == core::vec3(0) && ledger.couldBeTwin();
     if (twin) ledger.markTwin();
