@@ -4,11 +4,11 @@
 //   decay of the power sums            ledger_test (ControlConstantDecayOfPowerSumsIsCaught)
 //   decay 1 over 10^6 frames           ledger_test (AMillionFramesWithoutForgetting...)
 //   E[x^2] - m^2                       filter_test (InnovationsSurviveWhereSquaresCancel)
-//   variance floors, radiance scales   filter_test (IsInvariantToRadianceScale)
+//   variance floor                     VarianceFloor, below, and filter_test (IsInvariantToRadianceScale)
 //   not finite input                   filter_test (TreatsNotFiniteRadianceAsAFrameWithoutSamples), and below
 //   firefly                            Fireflies, below
 //   half storage, memory               packed_ledger_test
-//   reset                              history_test, history_properties_test (AResetIsAFreshStart)
+//   reset                              Reset, below, and history_properties_test (AResetIsAFreshStart)
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "tests/schedule.h"
 #include "tests/synthetic.h"
 #include "twohistory/combination.h"
+#include "twohistory/gradient.h"
 #include "twohistory/mean.h"
 
 namespace {
@@ -142,6 +143,67 @@ TEST(Denormals, LeaveBlendsFiniteAndInRange) {
     const float p = leastVarianceWeight(c);
     EXPECT_TRUE(p >= 0 && p <= 1);
     EXPECT_TRUE(std::isfinite(lagWeight(c, 19.0f, 4.0f, scale)));
+  }
+}
+
+/// Largest share of the seed's q = |g| / deviation over pixels after a step by a half, at some radiance; floor: least
+/// variance, as the author shipped it (1e-6), or none.
+float largestQ(float radiance, float floor) {
+  constexpr float kGradient = 0.5f * 0.2f, kDeviation = 0.05f;  // relative to the radiance
+  return std::min(1.0f, kGradient * radiance / std::sqrt(std::max(floor, std::pow(kDeviation * radiance, 2.0f))));
+}
+
+TEST(VarianceFloor, NaiveOneHidesAnyChangeInTheDarkAndOurBlendSeesIt) {
+  EXPECT_EQ(largestQ(1, 1e-6f), 1);
+  EXPECT_LT(largestQ(1e-4f, 1e-6f), 0.02f);       // the same step, darker: q = 0.01, as if nothing had happened
+  const auto shareOfFirst = [](float radiance) {  // of the seed after a step in the light
+    constexpr int kSide = 32;
+    experiments::Variant v = experiments::variantByName("seed");
+    tests::Synthetic input(
+        kSide, kSide, 42, [=](int, int, int f) { return core::vec3(f < 40 ? radiance : 1.5f * radiance); },
+        [](int x, int, int f) { return x < 16 && f > 30 ? 8 : 1; }, 16);
+    experiments::FilterState state(v, kSide, kSide);
+    core::Planes out(kSide, kSide);
+    for (int i = 0; i < 44; ++i) filter(input.frame(i), v, {}, state, out);
+    double sum = 0;
+    for (int y = 0; y < kSide; ++y)
+      for (int x = 0; x < 16; ++x) sum += state.blendWeight()(x, y);
+    return sum / (16 * kSide);
+  };
+  const double bright = shareOfFirst(1);
+  EXPECT_GT(bright, 0.8);
+  EXPECT_NEAR(shareOfFirst(1e-4f), bright, 1e-3);
+}
+
+TEST(Reset, NaiveGradientIsTheWholeSignalAndOursIsZero) {
+  const float x = 3, naive = 0.8f * 0 + 0.2f * (x - 0);  // nothing gathered: history counts as black
+  EXPECT_GT(naive, 0.5f);
+  constexpr int kSide = 8;
+  tests::Synthetic input(
+      kSide, kSide, 43, [](int, int, int) { return core::vec3(3); }, [](int, int, int) { return 1; }, 16);
+  const experiments::Variant v = experiments::variantByName("seed");
+  svgf::FilterState<2> s(kSide, kSide);
+  twohistory::GradientState gradient;
+  gradient.fit(kSide, kSide);
+  for (int i = 0; i < 12; ++i) {
+    experiments::Shaded frame = input.frame(i);
+    core::Image<twohistory::Taps> none(kSide, kSide);
+    if (i == 11) frame.taps = none;  // everything is disoccluded
+    s.swapFrames();
+    svgf::dropBadSamples(frame.radiance, frame.samples, s.samples);
+    svgf::accumulate<2>(v.filter, {v.histories[0], v.histories[1]}, frame.taps, frame.radiance, s);
+    twohistory::updateGradient<2>({}, frame.guide, frame.taps, s.samples, s.ledger[1 - s.now], 0, s.history.views()[0],
+                                  frame.radiance, gradient);
+    if (i == 10) {
+      EXPECT_NE(gradient.gradient.view().load(3, 3), core::vec3(0));  // control: noise has one
+    }
+    svgf::estimateVariance(v.filter, frame.guide, s);
+    svgf::filterHistories(v.filter, frame.guide, s);
+  }
+  for (int i = 0; i < kSide * kSide; ++i) {
+    EXPECT_EQ(gradient.gradient.view().at(i), core::vec3(0));
+    EXPECT_EQ(s.ledgerAt(i % kSide, i / kSide).weight[0], 1);
+    EXPECT_EQ(s.moments[s.now](i % kSide, i / kSide).innovations, 0);
   }
 }
 
