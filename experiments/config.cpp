@@ -59,7 +59,10 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
   config.shade.restir.features =
       config.render.features == Features::all ? restir::Features::all : restir::Features::automatic;
   baselineOf(config);
-  for (const Variant& v : variantsOf(config)) config.shade.checkSamples |= v.blend.validation.on;
+  for (const Variant& v : variantsOf(config)) {
+    config.shade.checkSamples |= v.blend.validation.on;
+    config.shade.restir.tellAll |= v.told != restir::Told::samples;
+  }
   requireDistinct(config);
   requireFiles(config);
   if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");

@@ -96,7 +96,9 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
           now.gbuffer.guide.view(),
           before.gbuffer.guide.view(),
           p.checkSamples ? s.check_.view() : In<float>{},
-          s.taps_};
+          s.taps_,
+          s.restir_.confidence,
+          s.restir_.effective};
 }
 
 namespace {
@@ -138,6 +140,12 @@ std::variant<svgf::FilterState<1>, svgf::FilterState<2>, svgf::FilterState<3>> m
   return svgf::FilterState<1>(width, height);
 }
 
+/// The counts that a variant is told; samples where a frame knows no others.
+In<float> toldCounts(const Shaded& frame, restir::Told told) {
+  const In<float> other = told == restir::Told::confidence ? frame.confidence : frame.effective;
+  return told == restir::Told::samples || other.empty() ? frame.samples : other;
+}
+
 }  // namespace
 
 FilterState::FilterState(const Variant& variant, int width, int height)
@@ -152,7 +160,7 @@ void filter(const Shaded& frame, const Variant& variant, PlanesView<const float>
             PlanesView<float> out) {
   std::visit(
       [&](auto& s) {
-        state.badPixels_ += svgf::dropBadSamples(frame.radiance, frame.samples, s.samples);
+        state.badPixels_ += svgf::dropBadSamples(frame.radiance, toldCounts(frame, variant.told), s.samples);
         s.swapFrames();
         Shaded input = frame;
         if (variant.filter.fireflyClamp > 0) {

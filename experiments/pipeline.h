@@ -32,8 +32,9 @@ struct Shaded {
   core::PlanesView<const float> albedo, emission;
   core::In<float> samples;  ///< n that the radiance stands for, 0 = nothing new in this pixel
   core::Guide guide, guideBefore;
-  core::In<float> check;            ///< luminance of independent results, negative where none; may be empty
-  core::In<twohistory::Taps> taps;  ///< where each pixel was in the frame before; none in the first frame
+  core::In<float> check;                      ///< luminance of independent results, negative where none; may be empty
+  core::In<twohistory::Taps> taps;            ///< where each pixel was in the frame before; none in the first frame
+  core::In<float> confidence{}, effective{};  ///< for variants that are told so instead of samples; may be empty
 };
 
 /// What shading keeps from frame to frame, for one seed.

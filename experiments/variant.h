@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "restir/told.h"
 #include "svgf/svgf.h"
 #include "twohistory/blend.h"
 #include "twohistory/policy.h"
@@ -15,6 +16,7 @@ struct Variant {
   std::vector<twohistory::Policy> histories{twohistory::Policy{}};  ///< 1 to 3
   twohistory::BlendParameters blend;
   svgf::FilterParameters filter;
+  restir::Told told = restir::Told::samples;  ///< what it takes as sample count
 };
 
 template <class V>
@@ -23,6 +25,11 @@ void describe(V& v, Variant& p) {
   v("histories", p.histories, "one to three policies");
   v("blend", p.blend, "how the histories become one image");
   v("filter", p.filter, "the filter around them");
+  v.choice("told", p.told,
+           {{"samples", restir::Told::samples},
+            {"confidence", restir::Told::confidence},
+            {"effective", restir::Told::effective}},
+           "what it takes as sample count");
 }
 
 /// Adds a variant to the library while the program starts: one static object in a file of experiments/extensions. See

@@ -19,6 +19,7 @@
 #include "restir/mis.h"
 #include "restir/past.h"
 #include "restir/spatial.h"
+#include "restir/told.h"
 #include "twohistory/ledger.h"
 #include "twohistory/taps.h"
 
@@ -52,7 +53,9 @@ struct RestirParameters {
   TemporalParameters temporal;
   SpatialParameters spatial;
   Features features = Features::automatic;
-  bool demodulate = true;  ///< divide radiance by demodulationAlbedo()
+  bool demodulate = true;        ///< divide radiance by demodulationAlbedo()
+  bool tellAll = false;          ///< work out the counts of every Told, not of samples alone
+  float sharedVariance = 0.45f;  ///< rho of [told 2] where n results share one reservoir
 };
 
 /// One frame's input; all images have one size. Whoever renders keeps now's and before's owners alive.
@@ -78,6 +81,7 @@ struct RestirState {
   Image<Taps> taps;                     ///< the one tap that was chosen
   Image<Surface> waitedBefore, waited;  ///< surface of a reservoir that waits; empty until one does
   Image<float> shaded;  ///< n that a pixel's radiance stands for: 0 without surface, samples or finite result
+  Image<float> confidence, effective;  ///< the same as Told names them; empty unless all are told
   PastMoments past;
   bool waitsBefore = false, waits = false;  ///< some pixel of the frame had n = 0
   std::int64_t bad = 0;
@@ -127,6 +131,8 @@ void describe(V& v, RestirParameters& p) {
            "of reservoirs; none is resampled importance sampling alone");
   v.choice("mis", p.mis, {{"constant", Mis::constant}, {"balance", Mis::balance}},
            "weights of merging; constant is biased");
+  v("sharedVariance", p.sharedVariance, "correlation of a pixel's results, for variants told effective counts", 0.0,
+    1.0);
   v("candidates", p.candidates, "fresh candidates");
   v("temporal", p.temporal, "reuse from the frame before");
   v("spatial", p.spatial, "reuse from neighbours");

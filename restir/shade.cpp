@@ -66,6 +66,16 @@ vec3 shadePixel(const Pixel<F>& pixel, int batches) {
   return sum / static_cast<float>(batches);
 }
 
+/// [told 1], [told 2] for a pixel that was shaded with n samples; 0 for one that was not.
+void tellPixel(const RestirParameters& p, float n, RestirState& state, int x, int y) {
+  const Ledger<1>& ledger = state.ledgerNow(x, y);
+  const bool reuses = p.reuse != Reuse::none;
+  const float rho = p.reuse == Reuse::temporal ? 1 : p.sharedVariance;  // temporal: one result, whatever n
+  const float fresh = twohistory::freshWeight(p.temporal.policy, n);
+  state.confidence(x, y) = n > 0 && reuses ? ledger.weight[0] : n;
+  state.effective(x, y) = n > 0 && reuses ? effectiveResults(n, rho) * newShare(ledger, fresh) : n;
+}
+
 /// Radiance of one pixel, and the samples that it stands for.
 template <LightFeatures F>
 void storePixel(const RestirParameters& p, const Frame& frame, RestirState& state, int x, int y,
@@ -80,7 +90,9 @@ void storePixel(const RestirParameters& p, const Frame& frame, RestirState& stat
   }
   const bool good = core::isFinite(colour);
   radiance.store(x, y, good ? colour : vec3(0));
-  state.shaded(x, y) = batches > 0 && good ? frame.samples(x, y) : 0.0f;
+  const float n = batches > 0 && good ? frame.samples(x, y) : 0.0f;
+  state.shaded(x, y) = n;
+  if (p.tellAll) tellPixel(p, n, state, x, y);
 }
 
 /// Mean of similar neighbours that have samples, 0 if there are none. Reads only pixels with samples, and is called for
@@ -135,6 +147,8 @@ void shadeCheckSamples(const RestirParameters& p, const Frame& frame, const Rest
 
 void reuseSpatiallyAndShade(const RestirParameters& p, const Frame& frame, RestirState& state,
                             PlanesView<float> radiance) {
+  if (p.tellAll && state.effective.empty())
+    state.confidence = state.effective = Image<float>(radiance.width(), radiance.height());
   withLightFeatures(p, frame, [&]<LightFeatures F>() {
     core::forEachPixel(
         radiance.width(), radiance.height(), [&](int x, int y) { storePixel<F>(p, frame, state, x, y, radiance); },
