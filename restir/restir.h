@@ -55,7 +55,7 @@ struct RestirParameters {
   Features features = Features::automatic;
   bool demodulate = true;        ///< divide radiance by demodulationAlbedo()
   bool tellAll = false;          ///< work out the counts of every Told, not of samples alone
-  float sharedVariance = 0.45f;  ///< rho of [told 2] where n results share one reservoir
+  float sharedVariance = 0.23f;  ///< rho of [told] under spatial reuse
 };
 
 /// One frame's input; all images have one size. Whoever renders keeps now's and before's owners alive.

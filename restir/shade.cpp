@@ -66,14 +66,14 @@ vec3 shadePixel(const Pixel<F>& pixel, int batches) {
   return sum / static_cast<float>(batches);
 }
 
-/// [told 1], [told 2] for a pixel that was shaded with n samples; 0 for one that was not.
+/// [told] for a pixel that was shaded with n samples; 0 for one that was not.
 void tellPixel(const RestirParameters& p, float n, RestirState& state, int x, int y) {
   const Ledger<1>& ledger = state.ledgerNow(x, y);
   const bool reuses = p.reuse != Reuse::none;
   const float rho = p.reuse == Reuse::temporal ? 1 : p.sharedVariance;  // temporal: one result, whatever n
   const float fresh = twohistory::freshWeight(p.temporal.policy, n);
   state.confidence(x, y) = n > 0 && reuses ? ledger.weight[0] : n;
-  state.effective(x, y) = n > 0 && reuses ? effectiveResults(n, rho) * newShare(ledger, fresh) : n;
+  state.effective(x, y) = n > 0 && reuses ? effectiveCount(n, rho, ledger, fresh) : n;
 }
 
 /// Radiance of one pixel, and the samples that it stands for.

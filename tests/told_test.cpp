@@ -14,32 +14,30 @@ using twohistory::Ledger;
 using twohistory::Policy;
 using twohistory::Weighting;
 
-TEST(NewShare, UnderARelativeCapIsOneInTwiceTheCapPlusOne) {
-  for (const float cap : {0.0f, 1.0f, 5.0f, 20.0f, 100.0f})
-    for (const float n : {1.0f, 8.0f}) {
-      const Policy policy{Weighting::samples, Forgetting::relativeCap, cap};
-      Ledger<1> l;
-      for (int i = 0; i < 500; ++i) l = advance(l, {policy}, n);
-      EXPECT_NEAR(restir::newShare(l, n), 1 / (2 * cap + 1), 1e-5f) << cap;
-    }
+Ledger<1> steady(double cap, float n, int frames = 500) {
+  Ledger<1> l;
+  for (int i = 0; i < frames; ++i) l = advance(l, {Policy{Weighting::samples, Forgetting::relativeCap, cap}}, n);
+  return l;
 }
 
-TEST(NewShare, IsAllOfAFirstFrameAndMoreWhereTheFoveaArrives) {
-  const Policy policy{Weighting::samples, Forgetting::relativeCap, 20};
-  Ledger<1> l = advance(Ledger<1>{}, {policy}, 1.0f);
-  EXPECT_EQ(restir::newShare(l, 1), 1);
-  for (int i = 0; i < 100; ++i) l = advance(l, {policy}, 1.0f);
-  const float steady = restir::newShare(l, 1);
-  l = advance(l, {policy}, 8.0f);
-  EXPECT_NEAR(restir::newShare(l, 8), 8.0f / (2 * 21 + 8), 1e-5f);
-  EXPECT_GT(restir::newShare(l, 8), 5 * steady);
+TEST(EffectiveCount, UnderARelativeCapIsOneInTwiceTheCapPlusOne) {
+  for (const double cap : {0.0, 1.0, 5.0, 20.0, 100.0})
+    for (const float n : {1.0f, 8.0f})
+      EXPECT_NEAR(restir::effectiveCount(n, 1, steady(cap, n), n), 1 / (2 * cap + 1), 1e-5) << cap;
 }
 
-TEST(EffectiveResults, RunFromOneToAllOfThem) {
-  EXPECT_EQ(restir::effectiveResults(8, 0), 8);
-  EXPECT_EQ(restir::effectiveResults(8, 1), 1);
-  EXPECT_EQ(restir::effectiveResults(0, 0.5f), 0);
-  EXPECT_NEAR(restir::effectiveResults(8, 0.5f), 1 / (0.5f + 0.0625f), 1e-6f);
+TEST(EffectiveCount, OfIndependentResultsIsTheirNumberAndOfAFirstFrameOnlySharesTheReservoir) {
+  EXPECT_EQ(restir::effectiveCount(8, 0, steady(20, 8), 8), 8);
+  EXPECT_EQ(restir::effectiveCount(8, 1, steady(20, 8, 1), 8), 1);
+  EXPECT_NEAR(restir::effectiveCount(8, 0.5f, steady(20, 8, 1), 8), 1 / (0.5f + 0.0625f), 1e-6f);
+  EXPECT_EQ(restir::effectiveCount(0, 0.5f, steady(20, 8), 0), 0);
+}
+
+TEST(EffectiveCount, RisesMoreThanTheCountWhereTheFoveaArrives) {
+  Ledger<1> l = steady(20, 1);
+  const float before = restir::effectiveCount(1, 0.23f, l, 1);
+  l = advance(l, {Policy{Weighting::samples, Forgetting::relativeCap, 20}}, 8.0f);
+  EXPECT_GT(restir::effectiveCount(8, 0.23f, l, 8), 5 * before);
 }
 
 /// What every pixel's radiance stands for after some frames of a world with counts 0, 1 and 4.
