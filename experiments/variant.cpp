@@ -48,6 +48,9 @@ std::vector<Variant> ownLibrary() {
   Variant checked = all;
   checked.name = "lag-checked";
   checked.blend.validation.on = true;
+  Variant bold = checked;
+  bold.name = "lag-bold";
+  bold.histories[1] = samples(0.97);
   return {make("none", {frames(0)}),
           make("unweighted", {u}),
           make("unweighted-96", {frames(0.96)}),
@@ -64,6 +67,7 @@ std::vector<Variant> ownLibrary() {
           lag("lag-safe", {u, f}, -0.5f, 1.0f, NoiseEstimate::safe),
           all,
           checked,
+          bold,
           make("oracle", {u, w}, BlendMode::oracle)};
 }
 
