@@ -13,6 +13,7 @@
 #include "experiments/progress.h"
 #include "experiments/report.h"
 #include "experiments/scene_source.h"
+#include "experiments/scenes/builtin.h"
 #include "experiments/sequence.h"
 
 namespace experiments {

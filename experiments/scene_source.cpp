@@ -31,11 +31,6 @@ core::Scene loadBuiltin(const std::string& name, std::filesystem::path folder) {
 
 }  // namespace
 
-bool isBuiltin(const std::string& name) {
-  const auto names = builtinSceneNames();
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path& folder) {
   const bool builtin = isBuiltin(nameOrFile);
   if (!builtin && !std::filesystem::path(nameOrFile).has_extension()) {

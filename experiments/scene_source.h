@@ -13,8 +13,6 @@ namespace experiments {
 /// Throws core::Error.
 core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path& folder = {});
 
-bool isBuiltin(const std::string& name);
-
 /// A name for tables and files: the built-in name, or the file's stem.
 std::string sceneLabel(const std::string& nameOrFile);
 

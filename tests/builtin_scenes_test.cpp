@@ -59,8 +59,11 @@ int movingInstances(const Scene& scene, bool emissive) {
 }  // namespace
 
 class BuiltinScene : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(All, BuiltinScene, testing::ValuesIn(experiments::builtinSceneNames()),
-                         [](const auto& test) { return test.param; });
+INSTANTIATE_TEST_SUITE_P(All, BuiltinScene, testing::ValuesIn(experiments::builtinSceneNames()), [](const auto& test) {
+  std::string name = test.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
 
 TEST_P(BuiltinScene, RefersOnlyToWhatIsThere) {
   const Scene scene = experiments::builtinScene(GetParam());
@@ -157,6 +160,31 @@ TEST(Market, LightsThingsAndCameraMove) {
   const vec3 start = core::poseAt(scene, 0).camera.position, later = core::poseAt(scene, 4).camera.position;
   EXPECT_GE(length(later - start) / 4, 0.5f);
   EXPECT_LE(length(later - start) / 4, 1.0f);
+}
+
+TEST(Lamps, AreOneMeshOfAsManyTrianglesAndNearlyTheSamePowerWhateverTheirNumber) {
+  std::vector<float> total;
+  for (const std::size_t count : {1000u, 10'000u, 100'000u}) {
+    const Scene scene = experiments::builtinScene("lamps-" + std::to_string(count));
+    EXPECT_EQ(emissiveTriangles(scene), count);
+    EXPECT_LT(scene.nodes.size(), 100u);
+    float area = 0;
+    for (const core::Mesh& mesh : scene.meshes)
+      for (const core::uvec3& t : mesh.triangles)
+        if (scene.materials[mesh.material].emits())
+          area += 0.5f *
+                  length(cross(mesh.positions[t.y] - mesh.positions[t.x], mesh.positions[t.z] - mesh.positions[t.x]));
+    total.push_back(area);
+  }
+  EXPECT_NEAR(total[0] / total[2], 1, 0.15);
+  EXPECT_NEAR(total[1] / total[2], 1, 0.05);
+}
+
+TEST(Lamps, RefuseNumbersThatAreNone) {
+  for (const char* name :
+       {"lamps-", "lamps-0", "lamps--3", "lamps-1e3", "lamps-4000001", "lamps-99999999999", "lamps-7x"})
+    EXPECT_THROW(experiments::builtinScene(name), core::UsageError) << name;
+  EXPECT_FALSE(experiments::isBuiltin("lamps-7.glb"));
 }
 
 TEST(Builtin, UnknownNamesAreUsageErrorsThatListTheKnown) {

@@ -18,10 +18,14 @@ const std::map<std::string, core::Scene (*)()>& makers() {
 std::vector<std::string> builtinSceneNames() {
   std::vector<std::string> names;
   for (const auto& [name, make] : makers()) names.push_back(name);
+  names.push_back("lamps-1000");
   return names;
 }
 
+bool isBuiltin(const std::string& name) { return isLamps(name) || makers().contains(name); }
+
 core::Scene builtinScene(const std::string& name) {
+  if (isLamps(name)) return lampsScene(name);
   const auto found = makers().find(name);
   if (found != makers().end()) return found->second();
   std::string known;
