@@ -125,7 +125,11 @@ void describe(V& v, RestirParameters& p) {
   v.choice("reuse", p.reuse,
            {{"none", Reuse::none}, {"temporal", Reuse::temporal}, {"spatial", Reuse::spatial}, {"both", Reuse::both}},
            "of reservoirs; none is resampled importance sampling alone");
-  v.choice("mis", p.mis, {{"constant", Mis::constant}, {"balance", Mis::balance}},
+  v.choice("mis", p.mis,
+           {{"constant", Mis::constant},
+            {"contribution", Mis::contribution},
+            {"balance", Mis::balance},
+            {"pairwise", Mis::pairwise}},
            "weights of merging; constant is biased");
   v("candidates", p.candidates, "fresh candidates");
   v("temporal", p.temporal, "reuse from the frame before");

@@ -114,31 +114,35 @@ TEST(TinyWorld, ResamplingAloneIsUnbiased) {
     expectUnbiased(average([&](core::Rng& rng) { return shadePixel(p, fresh(kNow[p], 3, rng)); }), exact(p));
 }
 
-TEST(TinyWorld, BalanceIsUnbiasedInTime) {
+class UnbiasedMode : public testing::TestWithParam<Mis> {};
+
+TEST_P(UnbiasedMode, InTime) {
   for (int p = 0; p < 3; ++p)
     expectUnbiased(
-        average([&](core::Rng& rng) { return shadePixel(p, temporal(p, Mis::balance, rng, kBefore[p], kBefore[p])); }),
+        average([&](core::Rng& rng) { return shadePixel(p, temporal(p, GetParam(), rng, kBefore[p], kBefore[p])); }),
         exact(p));
 }
 
-TEST(TinyWorld, BalanceIsUnbiasedInSpace) {
+TEST_P(UnbiasedMode, InSpace) {
   for (int p = 0; p < 3; ++p)
     expectUnbiased(average([&](core::Rng& rng) {
-                     return shadePixel(
-                         p, spatial(p, Mis::balance, rng, [&](int q) { return fresh(kNow[q], 1 + q, rng); }));
+                     return shadePixel(p,
+                                       spatial(p, GetParam(), rng, [&](int q) { return fresh(kNow[q], 1 + q, rng); }));
                    }),
                    exact(p));
 }
 
-TEST(TinyWorld, BalanceIsUnbiasedInTimeAndSpace) {
+TEST_P(UnbiasedMode, InTimeAndSpace) {
   for (int p = 0; p < 3; ++p)
     expectUnbiased(average([&](core::Rng& rng) {
-                     return shadePixel(p, spatial(p, Mis::balance, rng, [&](int q) {
-                                         return temporal(q, Mis::balance, rng, kBefore[q], kBefore[q]);
+                     return shadePixel(p, spatial(p, GetParam(), rng, [&](int q) {
+                                         return temporal(q, GetParam(), rng, kBefore[q], kBefore[q]);
                                        }));
                    }),
                    exact(p));
 }
+
+INSTANTIATE_TEST_SUITE_P(TinyWorld, UnbiasedMode, testing::Values(Mis::contribution, Mis::balance, Mis::pairwise));
 
 TEST(TinyWorld, ConstantIsBiasedInTimeAsPredicted) {
   for (int p = 0; p < 3; ++p) {
