@@ -6,8 +6,8 @@
 //
 // Rules that keep it unbiased: taps, neighbours and confidences follow from geometry, counts and random numbers, never
 // from a reservoir's sample; null samples keep their confidence; what is kept for the next frame is the reservoir
-// before spatial reuse; shadow rays are never written back. Where n = 0 a reservoir waits, and remembers the surface,
-// viewer and lights that its target had.
+// before spatial reuse; shadow rays are written back only where every target includes them. Where n = 0 a reservoir
+// waits, and remembers the surface, viewer, lights and geometry that its target had.
 //
 // Sources: Bitterli et al. 2020; Lin et al. 2022 (see mis.h). Sample counts are this project's.
 #pragma once
@@ -41,8 +41,10 @@ enum class Features { automatic, all };
 struct TemporalParameters {
   twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 20};
   Choice tap = Choice::stochastic;  ///< `best` is 5 % quieter in the median but keeps its fireflies: docs/decisions.md
-  /// Targets of the history: with the surface, viewer and lights it had (unbiased), or with this frame's (cheaper).
+  /// Targets of the history: with the surface, viewer, lights and geometry it had (unbiased), or with this frame's
+  /// (cheaper).
   bool previousSurface = true, previousCamera = true, previousLights = true;
+  bool previousGeometry = true;  ///< only where targets include visibility
 };
 
 struct RestirParameters {
@@ -52,6 +54,9 @@ struct RestirParameters {
   TemporalParameters temporal;
   SpatialParameters spatial;
   Features features = Features::automatic;
+  /// Targets include the shadow ray of their own surface at their own instant (target.h), and the last one is reused
+  /// for shading.
+  bool targetVisibility = false;
   bool demodulate = true;  ///< divide radiance by demodulationAlbedo()
 };
 
@@ -109,6 +114,8 @@ void describe(V& v, TemporalParameters& p) {
   v("previousSurface", p.previousSurface, "history targets use the surface they had, else this frame's (biased)");
   v("previousCamera", p.previousCamera, "history targets use the viewer they had, else this frame's (biased)");
   v("previousLights", p.previousLights, "history targets use the lights they had, else this frame's (biased)");
+  v("previousGeometry", p.previousGeometry,
+    "history targets that include visibility trace the geometry they had, else this frame's (biased)");
 }
 
 template <class V>
@@ -131,6 +138,7 @@ void describe(V& v, RestirParameters& p) {
             {"balance", Mis::balance},
             {"pairwise", Mis::pairwise}},
            "weights of merging; constant is biased");
+  v("targetVisibility", p.targetVisibility, "targets include occlusion, a ray each; else shading alone traces it");
   v("candidates", p.candidates, "fresh candidates");
   v("temporal", p.temporal, "reuse from the frame before");
   v("spatial", p.spatial, "reuse from neighbours");

@@ -93,7 +93,7 @@ class World {
       Instant& now = frames_[f];
       now.pose = core::poseAt(scene_, f / 30.0);
       now.lights = std::make_shared<core::Lights>(scene_, now.pose);
-      now.tracer = std::make_unique<core::Tracer>(trees, scene_, now.pose);
+      now.tracer = std::make_shared<core::Tracer>(trees, scene_, now.pose);
       now.gbuffer = core::GBuffer(kWidth, kHeight);
       now.taps = core::Image<twohistory::Taps>(kWidth, kHeight);
       const Instant& before = frames_[std::max(f - 1, 0)];
@@ -105,7 +105,7 @@ class World {
   int frames() const { return static_cast<int>(frames_.size()); }
   core::Moment moment(int f) const {
     const Instant& i = frames_[f];
-    return {static_cast<std::uint32_t>(f), i.pose.camera.position, i.lights, i.tracer.get(), i.gbuffer.surfaces,
+    return {static_cast<std::uint32_t>(f), i.pose.camera.position, i.lights, i.tracer, i.gbuffer.surfaces,
             i.gbuffer.guide.view()};
   }
   restir::Frame frame(int f, core::In<float> samples, std::uint64_t seed, int tile = core::kDefaultTile) const {
@@ -116,7 +116,7 @@ class World {
   struct Instant {
     core::Pose pose;
     std::shared_ptr<const core::Lights> lights;
-    std::unique_ptr<core::Tracer> tracer;
+    std::shared_ptr<const core::Tracer> tracer;
     core::GBuffer gbuffer;
     core::Image<twohistory::Taps> taps;
   };
