@@ -9,13 +9,13 @@
 
 namespace core {
 
-/// Images are views: whoever renders keeps their owners alive for this frame and the next. Lights are shared, because
-/// reservoirs that wait may need them for longer.
+/// Images are views: whoever renders keeps their owners alive for this frame and the next. Lights and rays are shared,
+/// because reservoirs that wait may need them for longer.
 struct Moment {
   std::uint32_t frame = 0;
   vec3 cameraPosition{0};
   std::shared_ptr<const Lights> lights;
-  const Tracer* tracer = nullptr;
+  std::shared_ptr<const Tracer> tracer;
   In<Surface> surfaces;
   Guide guide;
 };

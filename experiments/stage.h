@@ -26,7 +26,7 @@ struct Instant {
   core::GBuffer gbuffer;
 
   core::Moment moment() const {
-    return {frame, pose.camera.position, lights, tracer.get(), gbuffer.surfaces, gbuffer.guide.view()};
+    return {frame, pose.camera.position, lights, tracer, gbuffer.surfaces, gbuffer.guide.view()};
   }
 };
 

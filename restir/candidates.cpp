@@ -12,7 +12,7 @@ bool anyWithoutSamples(In<float> samples) {
 }
 
 /// Older instants stay only while a reservoir may have waited since them.
-void beginFrame(const Frame& frame, RestirState& state) {
+void beginFrame(const Frame& frame, bool geometry, RestirState& state) {
   std::swap(state.before, state.now);
   std::swap(state.ledgerBefore, state.ledgerNow);
   std::swap(state.waitedBefore, state.waited);
@@ -21,7 +21,7 @@ void beginFrame(const Frame& frame, RestirState& state) {
   if (state.waits && state.waited.empty())
     state.waited = state.waitedBefore = Image<Surface>(frame.samples.width, frame.samples.height);
   if (!state.waitsBefore) state.past.forgetBefore(frame.before.frame);
-  state.past.remember(frame.now);
+  state.past.remember(frame.now, geometry);
 }
 
 template <LightFeatures F>
@@ -39,7 +39,12 @@ Reservoir drawPixel(const RestirParameters& p, const Frame& frame, int x, int y)
     }
   }
   const float confidence = twohistory::freshWeight(p.temporal.policy, frame.samples(x, y));
-  return builder.finish(confidence, frame.now.frame);
+  Reservoir r = builder.finish(confidence, frame.now.frame);
+  if (p.targetVisibility && r.unbiasedWeight > 0) {
+    const auto in = frame.now.lights->template incident<F>(r.sample, surface.position);
+    if (!visible(*frame.now.tracer, surface, in)) r.unbiasedWeight = 0;
+  }
+  return r;
 }
 
 }  // namespace
@@ -54,7 +59,7 @@ RestirState::RestirState(int width, int height)
       shaded(width, height) {}
 
 void drawCandidates(const RestirParameters& p, const Frame& frame, RestirState& state) {
-  beginFrame(frame, state);
+  beginFrame(frame, p.targetVisibility, state);
   if (p.reuse == Reuse::none) return;  // shading draws its own, a reservoir a result
   withLightFeatures(p, frame, [&]<LightFeatures F>() {
     core::forEachPixel(

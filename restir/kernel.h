@@ -22,6 +22,17 @@ void withLightFeatures(const RestirParameters& parameters, const Frame& frame, B
   core::withFeatures(all ? LightFeatures{true, true} : frame.now.lights->features(), body);
 }
 
+/// The same, and whether targets include visibility: body.template operator()<F, kVisibility>().
+template <class Body>
+void withTargetFeatures(const RestirParameters& parameters, const Frame& frame, Body&& body) {
+  withLightFeatures(parameters, frame, [&]<LightFeatures F>() {
+    if (parameters.targetVisibility)
+      body.template operator()<F, true>();
+    else
+      body.template operator()<F, false>();
+  });
+}
+
 /// A few values in place, for things that are made one by one and need no destructor.
 template <class T, int Capacity>
 class InlineVector {
@@ -44,9 +55,13 @@ struct TargetParts {
   const Surface* surface;
   vec3 viewer;
   const Lights* lights;
-  template <LightFeatures F>
-  Target<F> target() const {
-    return {*surface, viewer, *lights};
+  const core::Tracer* tracer;  ///< null only where no target includes visibility
+  template <LightFeatures F, bool kVisibility = false>
+  Target<F, kVisibility> target() const {
+    if constexpr (kVisibility)
+      return {*surface, viewer, *lights, *tracer};
+    else
+      return {*surface, viewer, *lights};
   }
 };
 
@@ -54,15 +69,16 @@ struct TargetParts {
 /// stamped with must be remembered.
 inline TargetParts partsOf(const Reservoir& reservoir, std::int32_t pixel, const Moment& moment, In<Surface> waited,
                            const PastMoments& past) {
-  if (reservoir.frame == moment.frame) return {&moment.surfaces.at(pixel), moment.cameraPosition, moment.lights.get()};
+  if (reservoir.frame == moment.frame)
+    return {&moment.surfaces.at(pixel), moment.cameraPosition, moment.lights.get(), moment.tracer.get()};
   const PastMoment* then = past.find(reservoir.frame);
   CHECK(then != nullptr);
-  return {&waited.at(pixel), then->viewer, then->lights.get()};
+  return {&waited.at(pixel), then->viewer, then->lights.get(), then->tracer.get()};
 }
 
 /// Target parts of a pixel in this frame.
 inline TargetParts partsOf(const Frame& frame, int x, int y) {
-  return {&frame.now.surfaces(x, y), frame.now.cameraPosition, frame.now.lights.get()};
+  return {&frame.now.surfaces(x, y), frame.now.cameraPosition, frame.now.lights.get(), frame.now.tracer.get()};
 }
 
 }  // namespace restir

@@ -3,10 +3,17 @@
 // Inputs i = 0..k-1 hold a sample y_i, its unbiased contribution weight W_i, a confidence c_i and the target p_i that
 // they were resampled for. Input 0 is canonical: the result is resampled for its target.
 //   [merge 1]  w_i = m_i(y_i) p_0(y_i) W_i,   y drawn in proportion to w,   W = sum w / p_0(y),   c = sum c_i
-//   [merge 2]  constant:  m_i(y) = c_i / sum_j c_j            biased where p_i is 0 and another p_j is not
-//   [merge 3]  balance:   m_i(y) = c_i p_i(y) / sum_j c_j p_j(y)
-// Sources: Bitterli et al., "Spatiotemporal Reservoir Resampling" (2020), algorithm 4; Lin et al., "Generalized
-// Resampled Importance Sampling" (2022), generalised balance heuristic.
+//   [merge 2]  constant:      m_i(y) = c_i / sum_j c_j        biased where p_i is 0 and another p_j is not
+//   [merge 3]  balance:       m_i(y) = c_i p_i(y) / sum_j c_j p_j(y)                             k^2 targets
+//   [merge 4]  contribution:  constant, and then W times sum_j c_j / Z(y), Z = sum of c_j over p_j(y) > 0
+//   [merge 5]  pairwise, with C = sum_j c_j and N = C - c_0, i > 0:                              3 k targets
+//                             m_i(y) = c_i / C  N p_i(y) / (c_0 p_0(y) + N p_i(y))
+//                             m_0(y) = c_0 / C + sum_i c_i / C  c_0 p_0(y) / (c_0 p_0(y) + N p_i(y))
+// The factor of [merge 4] depends on the chosen sample alone, so E[W g(y)] = sum over y of g(y) sum_i c_i [p_i(y) > 0]
+// / Z(y) = sum of g: W is an unbiased contribution weight like any other, and may be merged again. Each unbiased mode
+// needs c_0 > 0. The summand c_0 / C makes [merge 5] defensive: the canonical input keeps that share wherever it is.
+// Sources: Bitterli et al., "Spatiotemporal Reservoir Resampling" (2020), algorithms 4 and 6; Lin et al., "Generalized
+// Resampled Importance Sampling" (2022), generalised balance heuristic and defensive pairwise MIS.
 #pragma once
 
 #include <span>
@@ -15,7 +22,7 @@
 
 namespace restir {
 
-enum class Mis { constant, balance };
+enum class Mis { constant, contribution, balance, pairwise };
 
 /// An input of a merge. target: what its reservoir was resampled for; callable with a LightSample.
 template <class T>
@@ -44,10 +51,42 @@ float balanceWeight(std::span<const Source<T>> sources, std::size_t i, const Lig
   return sum > 0 ? own / sum : 0.0f;  // [merge 3]
 }
 
+/// One pair of [merge 5]: the share of input i against the canonical one; others = N.
 template <class T>
-float misWeight(Mis mis, std::span<const Source<T>> sources, std::size_t i, const LightSample& y, float canonical) {
+double pairShare(const Source<T>& canonicalSource, const Source<T>& other, double others, const LightSample& y,
+                 float canonical) {
+  const double mine = others * other.target(y), its = double{canonicalSource.reservoir.confidence} * canonical;
+  return mine + its > 0 ? mine / (mine + its) : 0.0;
+}
+
+/// m_i(y) of input i; canonical = p_0(y) > 0.
+template <class T>
+double pairwiseWeight(std::span<const Source<T>> sources, std::size_t i, const LightSample& y, float canonical) {
+  const double sum = sumConfidence(sources), others = sum - sources[0].reservoir.confidence;
+  const auto shareOf = [&](const Source<T>& s) { return pairShare(sources[0], s, others, y, canonical); };
+  if (i > 0) return sources[i].reservoir.confidence / sum * shareOf(sources[i]);  // [merge 5]
+  double weight = sources[0].reservoir.confidence / sum;
+  for (std::size_t j = 1; j < sources.size(); ++j)
+    if (const double c = sources[j].reservoir.confidence; c > 0) weight += c / sum * (1 - shareOf(sources[j]));
+  return weight;
+}
+
+/// m_i(y); canonical = p_0(y).
+template <class T>
+double misWeight(Mis mis, std::span<const Source<T>> sources, std::size_t i, const LightSample& y, float canonical) {
   if (mis == Mis::balance) return balanceWeight(sources, i, y, canonical);
+  if (mis == Mis::pairwise) return pairwiseWeight(sources, i, y, canonical);
   return sources[i].reservoir.confidence / sumConfidence(sources);  // [merge 2]
+}
+
+/// What W of the chosen sample y is multiplied by; canonical = p_0(y) > 0.
+template <class T>
+double normalisation(Mis mis, std::span<const Source<T>> sources, const LightSample& y, float canonical) {
+  if (mis != Mis::contribution) return 1;
+  double able = sources[0].reservoir.confidence;
+  for (std::size_t j = 1; j < sources.size(); ++j)
+    if (const double c = sources[j].reservoir.confidence; c > 0 && sources[j].target(y) > 0) able += c;
+  return able > 0 && canonical > 0 ? sumConfidence(sources) / able : 0.0;  // [merge 4]
 }
 
 /// Resamples the inputs into one reservoir, stamped with `frame`. Null samples keep their confidence. Which inputs
@@ -63,7 +102,8 @@ Reservoir mergeReservoirs(std::span<const Source<T>> sources, Mis mis, std::uint
     const double m = misWeight(mis, sources, i, r.sample, target);
     builder.add(r.sample, target, m * target * r.unbiasedWeight, rng);  // [merge 1]
   }
-  return builder.finish(sumConfidence(sources), frame);
+  const double factor = builder.empty() ? 1 : normalisation(mis, sources, builder.sample(), builder.target());
+  return builder.finish(sumConfidence(sources), frame, factor);
 }
 
 }  // namespace restir

@@ -32,9 +32,15 @@ class ReservoirBuilder {
     const double u = (rng.bits() + 0.5) * 0x1p-32;
     if (u * sum_ < w) sample_ = candidate, target_ = target;
   }
-  /// W = sum of w / p-hat(y).
-  Reservoir finish(float confidence, std::uint32_t frame) const {
-    const auto weight = static_cast<float>(sum_ / target_);
+  /// True while nothing has been chosen.
+  bool empty() const { return !sample_.valid(); }
+  /// What is chosen so far, and its target.
+  const LightSample& sample() const { return sample_; }
+  float target() const { return target_; }
+
+  /// W = factor times sum of w / p-hat(y).
+  Reservoir finish(float confidence, std::uint32_t frame, double factor = 1) const {
+    const auto weight = static_cast<float>(factor * sum_ / target_);
     if (!(weight > 0 && weight < kLargest)) return {{}, 0, confidence, frame};
     return {sample_, weight, confidence, frame};
   }

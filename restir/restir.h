@@ -6,8 +6,8 @@
 //
 // Rules that keep it unbiased: taps, neighbours and confidences follow from geometry, counts and random numbers, never
 // from a reservoir's sample; null samples keep their confidence; what is kept for the next frame is the reservoir
-// before spatial reuse; shadow rays are never written back. Where n = 0 a reservoir waits, and remembers the surface,
-// viewer and lights that its target had.
+// before spatial reuse; shadow rays are written back only where every target includes them. Where n = 0 a reservoir
+// waits, and remembers the surface, viewer, lights and geometry that its target had.
 //
 // Sources: Bitterli et al. 2020; Lin et al. 2022 (see mis.h). Sample counts are this project's.
 #pragma once
@@ -42,8 +42,10 @@ enum class Features { automatic, all };
 struct TemporalParameters {
   twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 20};
   Choice tap = Choice::stochastic;  ///< `best` is 5 % quieter in the median but keeps its fireflies: docs/decisions.md
-  /// Targets of the history: with the surface, viewer and lights it had (unbiased), or with this frame's (cheaper).
+  /// Targets of the history: with the surface, viewer, lights and geometry it had (unbiased), or with this frame's
+  /// (cheaper).
   bool previousSurface = true, previousCamera = true, previousLights = true;
+  bool previousGeometry = true;  ///< only where targets include visibility
 };
 
 struct RestirParameters {
@@ -53,6 +55,9 @@ struct RestirParameters {
   TemporalParameters temporal;
   SpatialParameters spatial;
   Features features = Features::automatic;
+  /// Targets include the shadow ray of their own surface at their own instant (target.h), and the last one is reused
+  /// for shading.
+  bool targetVisibility = false;
   bool demodulate = true;        ///< divide radiance by demodulationAlbedo()
   bool tellAll = false;          ///< work out the counts of every Told, not of samples alone
   float sharedVariance = 0.23f;  ///< rho of [told] under spatial reuse
@@ -113,6 +118,8 @@ void describe(V& v, TemporalParameters& p) {
   v("previousSurface", p.previousSurface, "history targets use the surface they had, else this frame's (biased)");
   v("previousCamera", p.previousCamera, "history targets use the viewer they had, else this frame's (biased)");
   v("previousLights", p.previousLights, "history targets use the lights they had, else this frame's (biased)");
+  v("previousGeometry", p.previousGeometry,
+    "history targets that include visibility trace the geometry they had, else this frame's (biased)");
 }
 
 template <class V>
@@ -129,8 +136,13 @@ void describe(V& v, RestirParameters& p) {
   v.choice("reuse", p.reuse,
            {{"none", Reuse::none}, {"temporal", Reuse::temporal}, {"spatial", Reuse::spatial}, {"both", Reuse::both}},
            "of reservoirs; none is resampled importance sampling alone");
-  v.choice("mis", p.mis, {{"constant", Mis::constant}, {"balance", Mis::balance}},
+  v.choice("mis", p.mis,
+           {{"constant", Mis::constant},
+            {"contribution", Mis::contribution},
+            {"balance", Mis::balance},
+            {"pairwise", Mis::pairwise}},
            "weights of merging; constant is biased");
+  v("targetVisibility", p.targetVisibility, "targets include occlusion, a ray each; else shading alone traces it");
   v("sharedVariance", p.sharedVariance, "correlation of a pixel's results, for variants told effective counts", 0.0,
     1.0);
   v("candidates", p.candidates, "fresh candidates");

@@ -6,31 +6,33 @@ namespace restir {
 namespace {
 
 /// A pixel that is shaded: its target and whatever its results share.
-template <LightFeatures F>
+template <LightFeatures F, bool kVisibility>
 struct Pixel {
   const RestirParameters& parameters;
   const Frame& frame;
   const RestirState& state;
   core::ivec2 at;
   const Surface& surface;
-  Target<F> target;
+  Target<F, kVisibility> target;
 
   core::Rng rng(core::Pass pass, int result) const {
     return {frame.seed, pass, pixelIndex(frame, at.x, at.y), frame.now.frame, static_cast<std::uint32_t>(result)};
   }
 };
 
-template <LightFeatures F>
-vec3 shadeSample(const Pixel<F>& pixel, const Reservoir& r) {
+/// known: the sample has passed a target that includes visibility, so its shadow ray need not be traced again.
+template <LightFeatures F, bool kVisibility>
+vec3 shadeSample(const Pixel<F, kVisibility>& pixel, const Reservoir& r, bool known = kVisibility) {
   if (!(r.unbiasedWeight > 0)) return vec3(0);
   const Incident in = pixel.target.incident(r.sample);
   const vec3 radiance = r.unbiasedWeight * pixel.target.radiance(in);
-  return core::maxComponent(radiance) > 0 && visible(*pixel.frame.now.tracer, pixel.surface, in) ? radiance : vec3(0);
+  if (!(core::maxComponent(radiance) > 0)) return vec3(0);
+  return known || visible(*pixel.frame.now.tracer, pixel.surface, in) ? radiance : vec3(0);
 }
 
 /// Resampled importance sampling alone: one batch.
-template <LightFeatures F>
-Reservoir drawBatch(const Pixel<F>& pixel, int result) {
+template <LightFeatures F, bool kVisibility>
+Reservoir drawBatch(const Pixel<F, kVisibility>& pixel, int result) {
   const Candidates<F> candidates(pixel.target, pixel.surface, *pixel.frame.now.tracer, pixel.parameters.candidates, 1);
   core::Rng rng = pixel.rng(core::Pass::candidates, result);
   ReservoirBuilder builder;
@@ -39,30 +41,31 @@ Reservoir drawBatch(const Pixel<F>& pixel, int result) {
 }
 
 /// The pixel's reservoir merged with those of chosen neighbours, each with the target that it had.
-template <LightFeatures F>
-Reservoir reuseNeighbours(const Pixel<F>& pixel, int result) {
+template <LightFeatures F, bool kVisibility>
+Reservoir reuseNeighbours(const Pixel<F, kVisibility>& pixel, int result) {
   const RestirState& state = pixel.state;
   const Moment& now = pixel.frame.now;
   core::Rng rng = pixel.rng(core::Pass::spatial, result);
   const Neighbours neighbours = chooseNeighbours(now, pixel.at, pixel.parameters.spatial, rng);
-  InlineVector<Source<Target<F>>, kMostNeighbours + 1> sources;
+  InlineVector<Source<Target<F, kVisibility>>, kMostNeighbours + 1> sources;
   sources.add(state.now(pixel.at.x, pixel.at.y), pixel.target);
   for (int i = 0; i < neighbours.count; ++i) {
     const Reservoir& r = state.now.view().at(neighbours.pixel[i]);
     const TargetParts parts = partsOf(r, neighbours.pixel[i], now, state.waited.view(), state.past);
-    sources.add(r, parts.target<F>());
+    sources.add(r, parts.template target<F, kVisibility>());
   }
-  return mergeReservoirs<Target<F>>(sources, pixel.parameters.mis, now.frame, rng);
+  return mergeReservoirs<Target<F, kVisibility>>(sources, pixel.parameters.mis, now.frame, rng);
 }
 
 /// Mean of the results. One reservoir without neighbours gives one result, however many samples it stands for.
-template <LightFeatures F>
-vec3 shadePixel(const Pixel<F>& pixel, int batches) {
+template <LightFeatures F, bool kVisibility>
+vec3 shadePixel(const Pixel<F, kVisibility>& pixel, int batches) {
   const Reuse reuse = pixel.parameters.reuse;
   if (reuse == Reuse::temporal) return shadeSample(pixel, pixel.state.now(pixel.at.x, pixel.at.y));
   vec3 sum(0);
   for (int i = 0; i < batches; ++i)
-    sum += shadeSample(pixel, reuse == Reuse::none ? drawBatch(pixel, i) : reuseNeighbours(pixel, i));
+    sum += reuse == Reuse::none ? shadeSample(pixel, drawBatch(pixel, i), false)
+                                : shadeSample(pixel, reuseNeighbours(pixel, i));
   return sum / static_cast<float>(batches);
 }
 
@@ -77,14 +80,15 @@ void tellPixel(const RestirParameters& p, float n, RestirState& state, int x, in
 }
 
 /// Radiance of one pixel, and the samples that it stands for.
-template <LightFeatures F>
+template <LightFeatures F, bool kVisibility>
 void storePixel(const RestirParameters& p, const Frame& frame, RestirState& state, int x, int y,
                 PlanesView<float> radiance) {
   const Surface& surface = frame.now.surfaces(x, y);
   const int batches = surface.hit() ? batchesOf(frame.samples(x, y)) : 0;
   vec3 colour(0);
   if (batches > 0) {
-    const Pixel<F> pixel{p, frame, state, {x, y}, surface, partsOf(frame, x, y).target<F>()};
+    const Pixel<F, kVisibility> pixel{p,      frame,   state,
+                                      {x, y}, surface, partsOf(frame, x, y).template target<F, kVisibility>()};
     colour = shadePixel(pixel, batches);
     if (p.demodulate) colour /= core::demodulationAlbedo(surface);
   }
@@ -127,7 +131,7 @@ std::int64_t countBad(const Frame& frame, In<float> shaded) {
 void shadeCheckSamples(const RestirParameters& p, const Frame& frame, const RestirState& state,
                        core::ImageView<float> luminance) {
   const std::uint32_t phase = core::Rng(frame.seed, core::Pass::other, 0, frame.now.frame).below(4);
-  withLightFeatures(p, frame, [&]<LightFeatures F>() {
+  withTargetFeatures(p, frame, [&]<LightFeatures F, bool kVisibility>() {
     core::forEachPixel(
         luminance.width, luminance.height,
         [&](int x, int y) {
@@ -136,7 +140,8 @@ void shadeCheckSamples(const RestirParameters& p, const Frame& frame, const Rest
           if (static_cast<std::uint32_t>((x & 1) + 2 * (y & 1)) != phase || !surface.hit() ||
               !(frame.samples(x, y) > 0))
             return;
-          const Pixel<F> pixel{p, frame, state, {x, y}, surface, partsOf(frame, x, y).target<F>()};
+          const Pixel<F, kVisibility> pixel{p,      frame,   state,
+                                            {x, y}, surface, partsOf(frame, x, y).template target<F, kVisibility>()};
           vec3 colour = shadeSample(pixel, state.fresh(x, y));
           if (p.demodulate) colour /= core::demodulationAlbedo(surface);
           if (core::isFinite(colour)) luminance(x, y) = core::luminance(colour);
@@ -149,10 +154,10 @@ void reuseSpatiallyAndShade(const RestirParameters& p, const Frame& frame, Resti
                             PlanesView<float> radiance) {
   if (p.tellAll && state.effective.empty())
     state.confidence = state.effective = Image<float>(radiance.width(), radiance.height());
-  withLightFeatures(p, frame, [&]<LightFeatures F>() {
+  withTargetFeatures(p, frame, [&]<LightFeatures F, bool kVisibility>() {
     core::forEachPixel(
-        radiance.width(), radiance.height(), [&](int x, int y) { storePixel<F>(p, frame, state, x, y, radiance); },
-        frame.tile);
+        radiance.width(), radiance.height(),
+        [&](int x, int y) { storePixel<F, kVisibility>(p, frame, state, x, y, radiance); }, frame.tile);
   });
   core::forEachPixel(
       radiance.width(), radiance.height(),

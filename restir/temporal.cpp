@@ -8,7 +8,7 @@ namespace {
 using twohistory::Step;
 
 /// The remembered value's Merge. Reads only what the previous frame left; writes only the pixel's own waiting surface.
-template <LightFeatures F>
+template <LightFeatures F, bool kVisibility>
 struct TemporalMerge {
   const RestirParameters& parameters;
   const Frame& frame;
@@ -30,17 +30,20 @@ struct TemporalMerge {
       return old;
     }
     const TargetParts now = partsOf(frame, step.pixel.x, step.pixel.y);
-    const std::array<Source<Target<F>>, 2> sources{{{fresh, now.target<F>()}, {old, approximate(then, now)}}};
+    const std::array<Source<Target<F, kVisibility>>, 2> sources{
+        {{fresh, now.template target<F, kVisibility>()}, {old, approximate(then, now)}}};
     core::Rng rng(frame.seed, core::Pass::temporal, pixelIndex(frame, step.pixel.x, step.pixel.y), frame.now.frame);
-    return mergeReservoirs(std::span<const Source<Target<F>>>(sources), parameters.mis, frame.now.frame, rng);
+    return mergeReservoirs(std::span<const Source<Target<F, kVisibility>>>(sources), parameters.mis, frame.now.frame,
+                           rng);
   }
 
-  Target<F> approximate(TargetParts then, const TargetParts& now) const {
+  Target<F, kVisibility> approximate(TargetParts then, const TargetParts& now) const {
     const TemporalParameters& p = parameters.temporal;
     if (!p.previousSurface) then.surface = now.surface;
     if (!p.previousCamera) then.viewer = now.viewer;
     if (!p.previousLights) then.lights = now.lights;
-    return then.target<F>();
+    if (!p.previousGeometry) then.tracer = now.tracer;
+    return then.template target<F, kVisibility>();
   }
 };
 
@@ -68,8 +71,8 @@ void reuseTemporally(const RestirParameters& p, const Frame& frame, RestirState&
     state.taps.fill({});
   else
     chooseTaps(p.temporal, frame, state);
-  withLightFeatures(p, frame, [&]<LightFeatures F>() {
-    const TemporalMerge<F> merge{p, frame, state, state.waited};
+  withTargetFeatures(p, frame, [&]<LightFeatures F, bool kVisibility>() {
+    const TemporalMerge<F, kVisibility> merge{p, frame, state, state.waited};
     const std::array<In<Reservoir>, 1> before{state.before};
     const std::array<core::ImageView<Reservoir>, 1> now{state.now};
     twohistory::accumulate<1>(state.taps, frame.samples, {p.temporal.policy}, state.ledgerBefore, state.ledgerNow,

@@ -97,7 +97,7 @@ TEST(Reservoir, MergingIsStreaming) {
   const std::vector<std::vector<std::vector<std::uint32_t>>> splits{
       {{0, 1, 2, 3, 4}, {5, 6, 7, 8, 9}}, {{9}, {1, 2, 3}, {0, 4, 5, 6, 7, 8}}, {{5, 7, 9}, {0, 1, 2, 3, 4, 6, 8}}};
   for (const auto& split : splits)
-    for (Mis mis : {Mis::constant, Mis::balance}) {
+    for (Mis mis : {Mis::constant, Mis::contribution, Mis::balance}) {
       const auto keep = [&](core::Rng& rng) {
         std::vector<restir::Source<Table>> sources;
         for (const auto& indices : split) sources.push_back({part(indices, rng), target});
@@ -143,30 +143,79 @@ TEST(Reservoir, ExpectationCatchesNullSamplesThatDoNotCount) {
   EXPECT_GT(std::abs(zOfExpectation([](int valid, int all) { return double(all) / valid; })), kLargestZ);
 }
 
-TEST(Mis, BalanceSumsToOneOverWhoeverCanProduceASample) {
+/// A merge whose targets and confidences range widely; some are 0.
+std::vector<restir::Source<Table>> oddSources(core::Rng& rng) {
+  std::vector<restir::Source<Table>> sources(1 + rng.below(6));
+  for (auto& s : sources) {
+    const bool canonical = &s == sources.data();  // it has samples, and a target that can produce y
+    s.reservoir.confidence = !canonical && rng.uniform() < 0.2f ? 0.0f : std::pow(10.0f, 6 * rng.uniform() - 2);
+    s.target.values = {!canonical && rng.uniform() < 0.4f ? 0.0f : std::pow(10.0f, 12 * rng.uniform() - 6)};
+  }
+  return sources;
+}
+
+/// Sum of what each input that can produce y contributes; 1 if the mode is unbiased.
+double sumOfWeights(Mis mis, std::span<const restir::Source<Table>> sources, const LightSample& y) {
+  const float canonical = sources[0].target(y);
+  double sum = 0;
+  for (std::size_t i = 0; i < sources.size(); ++i)
+    if (sources[i].reservoir.confidence > 0 && sources[i].target(y) > 0)
+      sum += restir::misWeight<Table>(mis, sources, i, y, canonical);
+  return sum * restir::normalisation<Table>(mis, sources, y, canonical);
+}
+
+TEST(Mis, WeightsSumToOneOverWhoeverCanProduceASample) {
   core::Rng rng = rngOf(0);
   int failedByConstant = 0;
-  for (int trial = 0; trial < 2000; ++trial) {
-    std::vector<restir::Source<Table>> sources(1 + rng.below(6));
-    for (auto& s : sources) {
-      s.reservoir.confidence = rng.uniform() < 0.2f ? 0.0f : std::pow(10.0f, 6 * rng.uniform() - 2);
-      s.target.values = {rng.uniform() < 0.4f ? 0.0f : std::pow(10.0f, 12 * rng.uniform() - 6)};
-    }
-    double balance = 0, constant = 0;
-    bool possible = false;
-    const LightSample y{0, {}};
-    for (std::size_t i = 0; i < sources.size(); ++i) {
-      if (!(sources[i].reservoir.confidence > 0 && sources[i].target(y) > 0)) continue;
-      possible = true;
-      const float canonical = sources[0].target(y);
-      balance += restir::misWeight<Table>(Mis::balance, sources, i, y, canonical);
-      constant += restir::misWeight<Table>(Mis::constant, sources, i, y, canonical);
-    }
-    if (!possible) continue;
-    EXPECT_NEAR(balance, 1, 1e-6);
-    failedByConstant += std::abs(constant - 1) > 1e-6;
+  for (int trial = 0; trial < 5000; ++trial) {
+    const auto sources = oddSources(rng);
+    for (Mis mis : {Mis::contribution, Mis::balance, Mis::pairwise})
+      EXPECT_NEAR(sumOfWeights(mis, sources, {0, {}}), 1, 1e-6) << static_cast<int>(mis);
+    failedByConstant += std::abs(sumOfWeights(Mis::constant, sources, {0, {}}) - 1) > 1e-6;
   }
-  EXPECT_GT(failedByConstant, 500);
+  EXPECT_GT(failedByConstant, 1000);
+}
+
+/// z of E[W g(y)] over two merges, one after the other, whose targets see different lights, against the sum of g over
+/// what the last canonical target sees.
+double zOfMerges(Mis mis) {
+  const std::array<Table, 3> targets{{{{2, 0, 1, 5}}, {{0, 3, 1, 0}}, {{1, 4, 0, 0.1f}}}};
+  const std::array<float, 4> g{1, 100, 2, 30};
+  const auto fresh = [](const Table& target, int count, core::Rng& rng) {
+    ReservoirBuilder builder;
+    for (int i = 0; i < count; ++i) {
+      const LightSample y{rng.below(4), {}};
+      builder.add(y, target(y), target(y) * 4.0 / count, rng);
+    }
+    return builder.finish(static_cast<float>(count), 0);
+  };
+  core::RunningMoments moments;
+  for (int t = 0; t < 200'000; ++t) {
+    core::Rng rng = rngOf(t);
+    const std::vector<restir::Source<Table>> first{{fresh(targets[1], 1, rng), targets[1]},
+                                                   {fresh(targets[2], 3, rng), targets[2]}};
+    const Reservoir merged = restir::mergeReservoirs<Table>(first, mis, 0, rng);
+    const std::vector<restir::Source<Table>> second{{fresh(targets[0], 2, rng), targets[0]}, {merged, targets[1]}};
+    const Reservoir r = restir::mergeReservoirs<Table>(second, mis, 0, rng);
+    moments.add(r.unbiasedWeight > 0 ? r.unbiasedWeight * g[r.sample.light] : 0.0);
+  }
+  return (moments.mean() - (1 + 2 + 30)) / std::sqrt(moments.meanVariance());
+}
+
+TEST(Mis, WeightTimesFunctionIsItsSumAfterMergesOfMerges) {
+  for (Mis mis : {Mis::contribution, Mis::balance, Mis::pairwise})
+    EXPECT_LT(std::abs(zOfMerges(mis)), kLargestZ) << static_cast<int>(mis);
+  EXPECT_GT(std::abs(zOfMerges(Mis::constant)), kLargestZ);
+}
+
+TEST(Mis, PairwiseLeavesTheCanonicalInputItsShare) {
+  core::Rng rng = rngOf(0);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const auto sources = oddSources(rng);
+    const std::span<const restir::Source<Table>> span(sources);
+    const double share = sources[0].reservoir.confidence / double{restir::sumConfidence(span)};
+    EXPECT_GE(restir::misWeight(Mis::pairwise, span, 0, {0, {}}, sources[0].target({0, {}})), share * (1 - 1e-6));
+  }
 }
 
 TEST(Reservoir, NoNumberBreaksIt) {
@@ -184,7 +233,7 @@ TEST(Reservoir, NoNumberBreaksIt) {
         EXPECT_EQ(r.confidence, confidence);
         // A stored weight or target that is out of order must not spread through a merge either.
         const Reservoir stored{{0, {}}, weight, confidence, 0}, good{{1, {}}, 1, 1, 0};
-        for (Mis mis : {Mis::constant, Mis::balance}) {
+        for (Mis mis : {Mis::constant, Mis::contribution, Mis::balance, Mis::pairwise}) {
           const std::vector<restir::Source<Table>> sources{{good, {{target, 1}}}, {stored, {{target, 1}}}};
           const Reservoir merged = restir::mergeReservoirs<Table>(sources, mis, 0, rng);
           EXPECT_TRUE(std::isfinite(merged.unbiasedWeight) && merged.unbiasedWeight >= 0);

@@ -51,6 +51,11 @@ TEST(Restir, EveryBalancedReuseIsUnbiased) {
     expectUnbiased(world, wide(reuse), 768);
 }
 
+TEST(Restir, ContributionAndPairwiseAreUnbiased) {
+  const World world(tests::makeWorld({}, true), kFrames);
+  for (Mis mis : {Mis::contribution, Mis::pairwise}) expectUnbiased(world, wide(Reuse::both, mis), 1024);
+}
+
 TEST(Restir, ConstantWeightsAreBiasedInSpace) {
   const World world(tests::makeWorld(), kFrames);
   expectBiased(world, wide(Reuse::spatial, Mis::constant), 512);

@@ -114,31 +114,35 @@ TEST(TinyWorld, ResamplingAloneIsUnbiased) {
     expectUnbiased(average([&](core::Rng& rng) { return shadePixel(p, fresh(kNow[p], 3, rng)); }), exact(p));
 }
 
-TEST(TinyWorld, BalanceIsUnbiasedInTime) {
+class UnbiasedMode : public testing::TestWithParam<Mis> {};
+
+TEST_P(UnbiasedMode, InTime) {
   for (int p = 0; p < 3; ++p)
     expectUnbiased(
-        average([&](core::Rng& rng) { return shadePixel(p, temporal(p, Mis::balance, rng, kBefore[p], kBefore[p])); }),
+        average([&](core::Rng& rng) { return shadePixel(p, temporal(p, GetParam(), rng, kBefore[p], kBefore[p])); }),
         exact(p));
 }
 
-TEST(TinyWorld, BalanceIsUnbiasedInSpace) {
+TEST_P(UnbiasedMode, InSpace) {
   for (int p = 0; p < 3; ++p)
     expectUnbiased(average([&](core::Rng& rng) {
-                     return shadePixel(
-                         p, spatial(p, Mis::balance, rng, [&](int q) { return fresh(kNow[q], 1 + q, rng); }));
+                     return shadePixel(p,
+                                       spatial(p, GetParam(), rng, [&](int q) { return fresh(kNow[q], 1 + q, rng); }));
                    }),
                    exact(p));
 }
 
-TEST(TinyWorld, BalanceIsUnbiasedInTimeAndSpace) {
+TEST_P(UnbiasedMode, InTimeAndSpace) {
   for (int p = 0; p < 3; ++p)
     expectUnbiased(average([&](core::Rng& rng) {
-                     return shadePixel(p, spatial(p, Mis::balance, rng, [&](int q) {
-                                         return temporal(q, Mis::balance, rng, kBefore[q], kBefore[q]);
+                     return shadePixel(p, spatial(p, GetParam(), rng, [&](int q) {
+                                         return temporal(q, GetParam(), rng, kBefore[q], kBefore[q]);
                                        }));
                    }),
                    exact(p));
 }
+
+INSTANTIATE_TEST_SUITE_P(TinyWorld, UnbiasedMode, testing::Values(Mis::contribution, Mis::balance, Mis::pairwise));
 
 TEST(TinyWorld, ConstantIsBiasedInTimeAsPredicted) {
   for (int p = 0; p < 3; ++p) {
@@ -222,6 +226,43 @@ TEST(TinyWorld, CountsFromTheLastEstimateAreBiased) {
   const auto m = chain([](int, float before) { return before > 5 ? 1 : 8; });
   expectBiased(m, exact(0));
   EXPECT_GT(std::abs(m.mean() / exact(0) - 1), 0.01);
+}
+
+/// Mean of four results in the last of six frames of one pixel; each frame, one of the results is fed back.
+core::RunningMoments resultsFedBack(const std::function<int(const std::array<Reservoir, 4>&)>& choose) {
+  return average(
+      [&](core::Rng& rng) {
+        Reservoir history;
+        float mean = 0;
+        for (int f = 0; f < 6; ++f) {
+          history.confidence = std::min(history.confidence, 20.0f);
+          std::array<Reservoir, 4> results;
+          mean = 0;
+          for (Reservoir& r : results) {
+            const std::vector<Source> sources{{fresh(kNow[0], 1, rng), kNow[0]}, {history, kNow[0]}};
+            r = restir::mergeReservoirs<Table>(sources, Mis::balance, 0, rng);
+            mean += shadePixel(0, r) / 4;
+          }
+          history = results[choose(results)];
+        }
+        return mean;
+      },
+      200'000);
+}
+
+TEST(TinyWorld, ResultsFedBackByIndexAreUnbiased) {
+  expectUnbiased(resultsFedBack([](const auto&) { return 0; }), exact(0));
+}
+
+TEST(TinyWorld, ResultsFedBackByTheBrightestAreBiased) {
+  const auto m = resultsFedBack([](const std::array<Reservoir, 4>& results) {
+    int best = 0;
+    for (int i = 1; i < 4; ++i)
+      if (shadePixel(0, results[i]) > shadePixel(0, results[best])) best = i;
+    return best;
+  });
+  expectBiased(m, exact(0));
+  EXPECT_GT(m.mean() / exact(0), 1.01);
 }
 
 }  // namespace

@@ -87,41 +87,48 @@ inline core::Scene makeWorld(const Motion& motion = {}, bool punctual = false) {
 /// Everything of a few frames that all sequences share: poses, lights, rays, surfaces and taps.
 class World {
  public:
-  World(core::Scene scene, int frames) : scene_(std::move(scene)), frames_(frames) {
+  World(core::Scene scene, int frames, int width = kWidth, int height = kHeight)
+      : scene_(std::move(scene)), frames_(frames), width_(width), height_(height) {
     const auto trees = core::buildMeshTrees(scene_);
     for (int f = 0; f < frames; ++f) {
       Instant& now = frames_[f];
       now.pose = core::poseAt(scene_, f / 30.0);
       now.lights = std::make_shared<core::Lights>(scene_, now.pose);
-      now.tracer = std::make_unique<core::Tracer>(trees, scene_, now.pose);
-      now.gbuffer = core::GBuffer(kWidth, kHeight);
-      now.taps = core::Image<twohistory::Taps>(kWidth, kHeight);
+      now.tracer = std::make_shared<core::Tracer>(trees, scene_, now.pose);
+      now.gbuffer = core::GBuffer(width, height);
+      now.taps = core::Image<twohistory::Taps>(width, height);
       const Instant& before = frames_[std::max(f - 1, 0)];
       core::traceGBuffer(scene_, now.pose, before.pose, *now.tracer, {}, now.gbuffer);
       if (f > 0) twohistory::reproject(now.gbuffer.guide.view(), before.gbuffer.guide.view(), {}, now.taps);
     }
   }
 
+  int width() const { return width_; }
+  int height() const { return height_; }
   int frames() const { return static_cast<int>(frames_.size()); }
+  /// Frames beyond the last repeat it: a still world goes on for ever from two frames.
   core::Moment moment(int f) const {
-    const Instant& i = frames_[f];
-    return {static_cast<std::uint32_t>(f), i.pose.camera.position, i.lights, i.tracer.get(), i.gbuffer.surfaces,
+    const Instant& i = instant(f);
+    return {static_cast<std::uint32_t>(f), i.pose.camera.position, i.lights, i.tracer, i.gbuffer.surfaces,
             i.gbuffer.guide.view()};
   }
   restir::Frame frame(int f, core::In<float> samples, std::uint64_t seed, int tile = core::kDefaultTile) const {
-    return {moment(f), moment(std::max(f - 1, 0)), samples, frames_[f].taps, seed, tile};
+    return {moment(f), moment(std::max(f - 1, 0)), samples, instant(f).taps, seed, tile};
   }
 
  private:
   struct Instant {
     core::Pose pose;
     std::shared_ptr<const core::Lights> lights;
-    std::unique_ptr<core::Tracer> tracer;
+    std::shared_ptr<const core::Tracer> tracer;
     core::GBuffer gbuffer;
     core::Image<twohistory::Taps> taps;
   };
+  const Instant& instant(int f) const { return frames_[std::min<std::size_t>(f, frames_.size() - 1)]; }
+
   core::Scene scene_;
   std::vector<Instant> frames_;
+  int width_, height_;
 };
 
 /// What a sequence may do besides rendering; all members optional.
@@ -136,8 +143,8 @@ struct Hooks {
 
 /// Blackens what is not compared.
 inline void blank(const std::function<bool(int, int)>& compared, core::Planes& image) {
-  for (int y = 0; y < kHeight && compared; ++y)
-    for (int x = 0; x < kWidth; ++x)
+  for (int y = 0; y < image.height() && compared; ++y)
+    for (int x = 0; x < image.width(); ++x)
       if (!compared(x, y)) image.view().store(x, y, vec3(0));
 }
 
@@ -145,11 +152,11 @@ inline void blank(const std::function<bool(int, int)>& compared, core::Planes& i
 inline void renderSequence(const World& world, restir::RestirParameters p, const Hooks& hooks, std::uint64_t seed,
                            core::Planes& out, int tile = core::kDefaultTile) {
   p.demodulate = false;
-  restir::RestirState state(kWidth, kHeight);
-  core::Image<float> samples(kWidth, kHeight, 1.0f);
+  restir::RestirState state(world.width(), world.height());
+  core::Image<float> samples(world.width(), world.height(), 1.0f);
   for (int f = 0; f < world.frames(); ++f) {
-    for (int y = 0; y < kHeight && hooks.samples; ++y)
-      for (int x = 0; x < kWidth; ++x) samples(x, y) = hooks.samples(f, x, y, out.view().load(x, y));
+    for (int y = 0; y < world.height() && hooks.samples; ++y)
+      for (int x = 0; x < world.width(); ++x) samples(x, y) = hooks.samples(f, x, y, out.view().load(x, y));
     const restir::Frame frame = world.frame(f, samples, seed, tile);
     restir::drawCandidates(p, frame, state);
     restir::reuseTemporally(p, frame, state);
@@ -161,13 +168,15 @@ inline void renderSequence(const World& world, restir::RestirParameters p, const
 
 /// Means over independent sequences: of every pixel's luminance in the last frame, and of the frame's sum.
 struct Estimate {
-  std::vector<core::RunningMoments> pixels{kPixels};
+  explicit Estimate(int count = kPixels) : pixels(count) {}
+
+  std::vector<core::RunningMoments> pixels;
   core::RunningMoments total;
 
   void add(const core::Planes& image) {
     double sum = 0;
-    for (int i = 0; i < kPixels; ++i) {
-      const double l = core::luminance(image.view().at(i));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const double l = core::luminance(image.view().at(static_cast<std::int32_t>(i)));
       pixels[i].add(l);
       sum += l;
     }
@@ -179,12 +188,12 @@ struct Estimate {
 inline Estimate estimate(const World& world, const restir::RestirParameters& p, int count, const Hooks& hooks = {},
                          std::uint64_t firstSeed = 1) {
   constexpr int kBatch = 16;
-  Estimate result;
+  Estimate result(world.width() * world.height());
   std::vector<core::Planes> images(kBatch);
   for (int first = 0; first < count; first += kBatch) {
     const int size = std::min(kBatch, count - first);
     tbb::parallel_for(0, size, [&](int i) {
-      images[i] = core::Planes(kWidth, kHeight);
+      images[i] = core::Planes(world.width(), world.height());
       renderSequence(world, p, hooks, firstSeed + static_cast<std::uint64_t>(first + i), images[i]);
     });
     for (int i = 0; i < size; ++i) result.add(images[i]);
@@ -196,11 +205,11 @@ inline Estimate estimate(const World& world, const restir::RestirParameters& p, 
 inline Estimate reference(const World& world, int images = 64, int samples = 1024,
                           const std::function<bool(int, int)>& compared = {}) {
   const core::Moment now = world.moment(world.frames() - 1);
-  Estimate result;
-  core::Planes image(kWidth, kHeight);
+  Estimate result(world.width() * world.height());
+  core::Planes image(world.width(), world.height());
   for (int i = 0; i < images; ++i) {
-    core::forEachPixel(kWidth, kHeight, [&](int x, int y) {
-      const auto pixel = static_cast<std::uint32_t>(y * kWidth + x);
+    core::forEachPixel(world.width(), world.height(), [&](int x, int y) {
+      const auto pixel = static_cast<std::uint32_t>(y * world.width() + x);
       image.view().store(x, y, restir::meanDirect(now, now.surfaces(x, y), samples, 1000 + i, pixel));
     });
     blank(compared, image);
@@ -223,7 +232,8 @@ struct Comparison {
 };
 inline Comparison compare(const Estimate& test, const Estimate& truth) {
   Comparison c{test.total.mean() / truth.total.mean(), zOf(test.total, truth.total), 0, 0};
-  for (int i = 0; i < kPixels; ++i) c.worst = std::max(c.worst, std::abs(zOf(test.pixels[i], truth.pixels[i])));
+  for (std::size_t i = 0; i < test.pixels.size(); ++i)
+    c.worst = std::max(c.worst, std::abs(zOf(test.pixels[i], truth.pixels[i])));
   c.detectable = core::sidakBound(1, 1e-6) * std::sqrt(test.total.meanVariance() + truth.total.meanVariance()) /
                  truth.total.mean();
   return c;

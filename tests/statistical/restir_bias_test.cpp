@@ -2,9 +2,12 @@
 //
 // Significance 1e-6 a test, seeds 1, 2, ...; the smallest bias of a frame's light that is detected half of the time is
 // 1 %, and single pixels are tested by Sidak's bound. Constant weights must fail.
+// TWOFOLD_SEQUENCES=4096 renders that many sequences of every mode for the table of bias and variance, which is
+// printed.
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "tests/restir_worlds.h"
 
@@ -14,6 +17,7 @@ using core::vec3;
 using restir::Mis;
 using restir::RestirParameters;
 using restir::Reuse;
+using tests::Estimate;
 using tests::Hooks;
 using tests::Motion;
 using tests::World;
@@ -84,6 +88,107 @@ TEST(RestirBias, MovingCamera) {
   Motion motion;
   motion.camera = vec3(0.05f, 0.02f, 0.03f);
   expectUnbiased("camera moves", World(tests::makeWorld(motion), kFrames), wide(Reuse::both));
+}
+
+struct Mode {
+  const char* name;
+  Reuse reuse;
+  Mis mis;
+  bool visibility;
+};
+constexpr std::array<Mode, 11> kModes{{{"none", Reuse::none, Mis::balance, false},
+                                       {"temporal, balance", Reuse::temporal, Mis::balance, false},
+                                       {"spatial, balance", Reuse::spatial, Mis::balance, false},
+                                       {"both, contribution", Reuse::both, Mis::contribution, false},
+                                       {"both, balance", Reuse::both, Mis::balance, false},
+                                       {"both, pairwise", Reuse::both, Mis::pairwise, false},
+                                       {"both, contribution, V", Reuse::both, Mis::contribution, true},
+                                       {"both, balance, V", Reuse::both, Mis::balance, true},
+                                       {"both, pairwise, V", Reuse::both, Mis::pairwise, true},
+                                       {"both, constant", Reuse::both, Mis::constant, false},
+                                       {"both, constant, V", Reuse::both, Mis::constant, true}}};
+
+int sequencesWanted() {
+  const char* text = std::getenv("TWOFOLD_SEQUENCES");
+  return text ? std::max(std::atoi(text), 512) : 1024;
+}
+
+/// Mean over pixels of the squared bias of their means, noise of both sides taken off, over the mean squared truth.
+/// leftOut: group that is left out, or -1.
+double relativeBias2(const std::vector<Estimate>& groups, const Estimate& truth, int leftOut) {
+  double bias = 0, scale = 0;
+  for (int i = 0; i < tests::kPixels; ++i) {
+    core::RunningMoments m;
+    for (int g = 0; g < static_cast<int>(groups.size()); ++g)
+      if (g != leftOut) m.merge(groups[g].pixels[i]);
+    const double r = truth.pixels[i].mean(), d = m.mean() - r;
+    bias += d * d - m.meanVariance() - truth.pixels[i].meanVariance();
+    scale += r * r - truth.pixels[i].meanVariance();
+  }
+  return bias / scale;
+}
+
+/// Half width at 95 % by the jackknife over groups of sequences.
+double bias2HalfWidth(const std::vector<Estimate>& groups, const Estimate& truth) {
+  const int count = static_cast<int>(groups.size());
+  core::RunningMoments leftOut;
+  for (int g = 0; g < count; ++g) leftOut.add(relativeBias2(groups, truth, g));
+  return core::studentQuantile(0.975, count - 1) * (count - 1) * std::sqrt(leftOut.meanVariance());
+}
+
+core::Interval relativeVariance(const std::vector<Estimate>& groups, const Estimate& truth) {
+  double scale = 0;
+  for (const auto& pixel : truth.pixels) scale += pixel.mean() * pixel.mean();
+  core::RunningMoments moments;
+  for (const Estimate& group : groups) {
+    double sum = 0;
+    for (const auto& pixel : group.pixels) sum += pixel.variance();
+    moments.add(sum / scale);
+  }
+  return core::meanInterval(moments);
+}
+
+void tabulate(const char* worldName, const World& world, const Mode& mode, const Estimate& truth) {
+  constexpr int kGroups = 16;
+  RestirParameters p = wide(mode.reuse, mode.mis);
+  p.targetVisibility = mode.visibility;
+  const int each = sequencesWanted() / kGroups;
+  std::vector<Estimate> groups;
+  Estimate all;
+  for (int g = 0; g < kGroups; ++g) {
+    groups.push_back(tests::estimate(world, p, each, {}, 1 + static_cast<std::uint64_t>(g) * each));
+    all.total.merge(groups[g].total);
+    for (int i = 0; i < tests::kPixels; ++i) all.pixels[i].merge(groups[g].pixels[i]);
+  }
+  const auto c = tests::compare(all, truth);
+  const core::Interval variance = relativeVariance(groups, truth);
+  std::printf("%-7s %-22s ratio %.4f +- %.4f  bias^2 %9.2e +- %.1e  variance %.4f +- %.4f  worst z %.1f\n", worldName,
+              mode.name, c.ratio, c.detectable / kLargestZ * 1.96, relativeBias2(groups, truth, -1),
+              bias2HalfWidth(groups, truth), variance.mean, variance.halfWidth(), c.worst);
+  std::fflush(stdout);
+  EXPECT_LT(c.detectable, 0.02);
+  if (mode.mis == Mis::constant) {
+    EXPECT_GT(std::abs(c.z), kLargestZ);
+    EXPECT_GT(c.worst, kLargestPixelZ);
+  } else {
+    EXPECT_LT(std::abs(c.z), kLargestZ) << c.ratio;
+    EXPECT_LT(c.worst, kLargestPixelZ);
+  }
+}
+
+TEST(RestirBias, TableOfEveryModeStill) {
+  const World world(tests::makeWorld({}, true), kFrames);
+  const Estimate truth = tests::reference(world, 64, 2048);
+  for (const Mode& mode : kModes) tabulate("still", world, mode, truth);
+}
+
+TEST(RestirBias, TableOfEveryModeUnderMotionOfLightOccluderAndCamera) {
+  Motion motion;
+  motion.light = vec3(0.2f, 0, 0.05f), motion.occluder = vec3(0.05f, 0, 0.03f),
+  motion.camera = vec3(0.05f, 0.02f, 0.03f);
+  const World world(tests::makeWorld(motion, true), kFrames);
+  const Estimate truth = tests::reference(world, 64, 2048);
+  for (const Mode& mode : kModes) tabulate("moving", world, mode, truth);
 }
 
 TEST(RestirBias, EnergyDoesNotDriftOverAThousandFrames) {
