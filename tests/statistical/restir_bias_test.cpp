@@ -110,7 +110,7 @@ constexpr std::array<Mode, 11> kModes{{{"none", Reuse::none, Mis::balance, false
 
 int sequencesWanted() {
   const char* text = std::getenv("TWOFOLD_SEQUENCES");
-  return text ? std::max(std::atoi(text), 512) : 1024;
+  return text ? std::max(std::atoi(text), 512) : 4096;
 }
 
 /// Mean over pixels of the squared bias of their means, noise of both sides taken off, over the mean squared truth.
@@ -152,7 +152,8 @@ void tabulate(const char* worldName, const World& world, const Mode& mode, const
   constexpr int kGroups = 16;
   RestirParameters p = wide(mode.reuse, mode.mis);
   p.targetVisibility = mode.visibility;
-  const int each = sequencesWanted() / kGroups;
+  const int wanted = mode.mis == Mis::contribution ? 2 * sequencesWanted() : sequencesWanted();  // the noisiest
+  const int each = wanted / kGroups;
   std::vector<Estimate> groups;
   Estimate all;
   for (int g = 0; g < kGroups; ++g) {
