@@ -83,7 +83,8 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
   const core::Moment momentNow = now.moment(), momentBefore = before.moment();
   const restir::Frame f{momentNow, momentBefore, s.samples_, s.taps_, s.seed_, p.tile};
   timed(t, "draw candidates", [&] { restir::drawCandidates(p.restir, f, s.restir_); });
-  if (p.checkSamples) timed(t, "check samples", [&] { restir::shadeCheckSamples(p.restir, f, s.restir_, s.check_); });
+  const bool checks = p.checkSamples && p.restir.reuse != restir::Reuse::none;  // else radiance itself is independent
+  if (checks) timed(t, "check samples", [&] { restir::shadeCheckSamples(p.restir, f, s.restir_, s.check_); });
   timed(t, "reuse temporally", [&] { restir::reuseTemporally(p.restir, f, s.restir_); });
   timed(t, "reuse spatially, shade", [&] { restir::reuseSpatiallyAndShade(p.restir, f, s.restir_, s.radiance_); });
   timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });
@@ -95,7 +96,7 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
           s.restir_.shaded,
           now.gbuffer.guide.view(),
           before.gbuffer.guide.view(),
-          p.checkSamples ? s.check_.view() : In<float>{},
+          checks ? s.check_.view() : In<float>{},
           s.taps_,
           s.restir_.confidence,
           s.restir_.effective};

@@ -1,6 +1,8 @@
 // Check samples are unbiased, and depend on no earlier frame, which reused samples do. Significance 1e-6 a test.
 #include <gtest/gtest.h>
 
+#include "experiments/pipeline.h"
+#include "experiments/scenes/builtin.h"
 #include "tests/restir_worlds.h"
 
 namespace {
@@ -107,6 +109,17 @@ TEST(CheckSamples, AreOneInABlockOfFourAndNoneWithoutSamples) {
       all += inBlock;
     }
   EXPECT_GT(all, kPixels / 16);  // half of the right half's blocks, some of which see no surface
+}
+
+TEST(CheckSamples, AreNotMadeWithoutReuseWhereRadianceItselfIsIndependent) {
+  const core::Scene scene = experiments::builtinScene("cornell");
+  const experiments::Stage stage(scene);
+  for (const restir::Reuse reuse : {restir::Reuse::none, restir::Reuse::both}) {
+    experiments::ShadeParameters p;
+    p.checkSamples = true, p.restir.reuse = reuse;
+    experiments::ShadeState state(stage, p, 1, 32, 24);
+    EXPECT_EQ(shade(stage, p, 0, state).check.empty(), reuse == restir::Reuse::none);
+  }
 }
 
 }  // namespace
