@@ -58,6 +58,17 @@ struct Incident {
   vec3 flux() const { return geometry * radiance; }
 };
 
+/// A light sample beside all that its light must tell to shine on a point: one cache line. Of triangles; other lights
+/// are few, and are asked themselves.
+struct PresampledLight {
+  vec3 point{0}, cross2Area{0};  ///< of the triangle, world space
+  vec3 radiance{0};              ///< texture included
+  LightSample sample;
+  float probability = 0;    ///< pdf() of the sample
+  std::uint32_t flags = 0;  ///< as TriangleLight's
+};
+static_assert(sizeof(PresampledLight) <= 64);
+
 /// Which kinds of light and texture a scene has; kernels are compiled for each set so that what is absent costs
 /// nothing.
 struct LightFeatures {
@@ -111,6 +122,12 @@ class Lights {
   /// has.
   template <LightFeatures F>
   Incident incident(const LightSample& s, const vec3& position) const;
+  /// The same, bit for bit, from what presample() packed: incident(presample(s), p) = incident(s, p).
+  template <LightFeatures F>
+  Incident incident(const PresampledLight& s, const vec3& position) const;
+  /// s: valid.
+  template <LightFeatures F>
+  PresampledLight presample(const LightSample& s) const;
 
   /// Light index of triangle `primitive` of instance `instance`, kNoLight if it does not emit.
   std::uint32_t lightOf(std::uint32_t instance, std::uint32_t primitive) const {
@@ -126,7 +143,8 @@ class Lights {
   void listPunctual(const Pose& pose, std::vector<float>& power);
   void balanceDirectional(const Pose& pose, std::vector<float>& power) const;
   void drawBy(const std::vector<float>& power);
-  Incident fromTriangle(const TriangleLight& light, vec2 b, const vec3& position) const;
+  static Incident fromTriangle(const vec3& point, const vec3& cross2Area, const vec3& radiance, std::uint32_t flags,
+                               const vec3& position);
   Incident fromPunctual(const PunctualState& light, const vec3& position) const;
   vec3 emissionTexel(const TriangleLight& light, vec2 b) const;
 
@@ -139,15 +157,16 @@ class Lights {
   LightFeatures features_{false, false};
 };
 
-inline Incident Lights::fromTriangle(const TriangleLight& light, vec2 b, const vec3& position) const {
-  const vec3 offset = light.point(b) - position;
+inline Incident Lights::fromTriangle(const vec3& point, const vec3& cross2Area, const vec3& radiance,
+                                     std::uint32_t flags, const vec3& position) {
+  const vec3 offset = point - position;
   const float distance2 = dot(offset, offset);
-  float facing = -0.5f * dot(light.cross2Area(), offset);  // area cos_light d
-  if (light.flags & TriangleLight::kMirrored) facing = -facing;
-  if (light.flags & TriangleLight::kDoubleSided) facing = std::abs(facing);
+  float facing = -0.5f * dot(cross2Area, offset);  // area cos_light d
+  if (flags & TriangleLight::kMirrored) facing = -facing;
+  if (flags & TriangleLight::kDoubleSided) facing = std::abs(facing);
   if (!(facing > 0 && distance2 > 0)) return {};
   const float distance = std::sqrt(distance2);
-  return {offset / distance, distance, light.radiance, facing / (distance * distance2)};
+  return {offset / distance, distance, radiance, facing / (distance * distance2)};
 }
 
 template <LightFeatures F>
@@ -155,10 +174,27 @@ Incident Lights::incident(const LightSample& s, const vec3& position) const {
   if constexpr (F.punctual)
     if (!isArea(s.light)) return fromPunctual(punctual_[s.light - triangles_.size()], position);
   const TriangleLight& light = triangles_[s.light];
-  Incident result = fromTriangle(light, s.uv, position);
+  Incident result = fromTriangle(light.point(s.uv), light.cross2Area(), light.radiance, light.flags, position);
   if constexpr (F.textured)
     if (light.flags & TriangleLight::kTextured && result.geometry > 0) result.radiance *= emissionTexel(light, s.uv);
   return result;
+}
+
+template <LightFeatures F>
+Incident Lights::incident(const PresampledLight& s, const vec3& position) const {
+  if constexpr (F.punctual)
+    if (!isArea(s.sample.light)) return incident<F>(s.sample, position);
+  return fromTriangle(s.point, s.cross2Area, s.radiance, s.flags, position);
+}
+
+template <LightFeatures F>
+PresampledLight Lights::presample(const LightSample& s) const {
+  if (!isArea(s.light)) return {.sample = s, .probability = pdf(s.light)};
+  const TriangleLight& light = triangles_[s.light];
+  PresampledLight p{light.point(s.uv), light.cross2Area(), light.radiance, s, pdf(s.light), light.flags};
+  if constexpr (F.textured)
+    if (light.flags & TriangleLight::kTextured) p.radiance *= emissionTexel(light, s.uv);
+  return p;
 }
 
 }  // namespace core

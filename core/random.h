@@ -29,7 +29,18 @@ inline std::uint64_t mixBits(std::uint64_t x) {
 }
 
 /// Passes draw from streams of their own; the number is part of the key.
-enum class Pass : std::uint32_t { candidates = 1, temporal, spatial, shade, reference, lab, gather, other, foveation };
+enum class Pass : std::uint32_t {
+  candidates = 1,
+  temporal,
+  spatial,
+  shade,
+  reference,
+  lab,
+  gather,
+  other,
+  foveation,
+  lightTiles
+};
 
 /// A stream of random numbers for one (seed, pass, pixel, frame, sample).
 class Rng {

@@ -25,13 +25,13 @@ void beginFrame(const Frame& frame, bool geometry, RestirState& state) {
 }
 
 template <LightFeatures F>
-Reservoir drawPixel(const RestirParameters& p, const Frame& frame, int x, int y) {
+Reservoir drawPixel(const RestirParameters& p, const Frame& frame, const LightTiles& tiles, int x, int y) {
   const Surface& surface = frame.now.surfaces(x, y);
   const int batches = surface.hit() ? batchesOf(frame.samples(x, y)) : 0;
   ReservoirBuilder builder;
   if (batches > 0) {
     const Target<F> target = partsOf(frame, x, y).target<F>();
-    const Candidates<F> candidates(target, surface, *frame.now.tracer, p.candidates, batches);
+    const Candidates<F> candidates(target, surface, *frame.now.tracer, p.candidates, batches, tiles.of(x, y));
     for (int i = 0; i < batches; ++i) {
       core::Rng rng(frame.seed, core::Pass::candidates, pixelIndex(frame, x, y), frame.now.frame,
                     static_cast<std::uint32_t>(i));
@@ -58,13 +58,21 @@ RestirState::RestirState(int width, int height)
       taps(width, height),
       shaded(width, height) {}
 
+void shareCandidates(const RestirParameters& p, const Frame& frame, const RestirState& first, RestirState& state) {
+  beginFrame(frame, p.targetVisibility, state);
+  state.fresh = first.fresh;
+}
+
 void drawCandidates(const RestirParameters& p, const Frame& frame, RestirState& state) {
   beginFrame(frame, p.targetVisibility, state);
+  state.lightTiles.fill(p.candidates.lightTiles, *frame.now.lights, lightFeatures(p, frame),
+                        std::int64_t{frame.samples.width} * frame.samples.height * p.candidates.lightSamples,
+                        frame.seed, frame.now.frame);
   if (p.reuse == Reuse::none) return;  // shading draws its own, a reservoir a result
   withLightFeatures(p, frame, [&]<LightFeatures F>() {
     core::forEachPixel(
         frame.samples.width, frame.samples.height,
-        [&](int x, int y) { state.fresh(x, y) = drawPixel<F>(p, frame, x, y); }, frame.tile);
+        [&](int x, int y) { state.fresh(x, y) = drawPixel<F>(p, frame, state.lightTiles, x, y); }, frame.tile);
   });
 }
 

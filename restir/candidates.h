@@ -11,6 +11,7 @@
 #pragma once
 
 #include "core/tracer.h"
+#include "restir/light_tiles.h"
 #include "restir/reservoir.h"
 #include "restir/target.h"
 
@@ -19,6 +20,7 @@ namespace restir {
 struct CandidateParameters {
   int lightSamples = 8;  ///< a batch
   int bsdfSamples = 1;   ///< a batch
+  TileUse lightTiles = TileUse::automatic;
 };
 
 /// A BSDF ray meets at most this many emitters; more along one line are dropped (their energy is lost).
@@ -44,40 +46,56 @@ struct ThroughOccluders {
   }
 };
 
-/// Streams batches into one builder, as part of `total` batches in all. Walk: what a BSDF ray finds; anything but the
-/// default is there to show in tests what goes wrong.
+/// Streams batches into one builder, as part of `total` batches in all. tile: what light samples are drawn from, empty
+/// for the lights themselves. Walk: what a BSDF ray finds; anything but the default is there to show in tests what goes
+/// wrong.
 template <LightFeatures F, class Walk = ThroughOccluders>
 class Candidates {
  public:
   Candidates(const Target<F>& target, const Surface& surface, const core::Tracer& tracer,
-             const CandidateParameters& parameters, int total)
+             const CandidateParameters& parameters, int total, std::span<const core::PresampledLight> tile = {})
       : target_(target),
         tracer_(tracer),
         parameters_(parameters),
         origin_(core::offsetOrigin(surface.position, surface.geometricNormal)),
-        total_(total) {}
+        total_(total),
+        tile_(tile) {}
 
   void addBatch(core::Rng& rng, ReservoirBuilder& builder) const {
     const Lights& lights = target_.lights();
     if (lights.empty()) return;
-    for (int i = 0; i < parameters_.lightSamples; ++i) add(lights.sample(rng), rng, builder);
+    addLightSamples(rng, builder);
     if (lights.triangleCount() == 0) return;
     for (int i = 0; i < parameters_.bsdfSamples; ++i) {
       const core::BsdfSample s = target_.bsdf().sample(rng.uniform3());
-      if (s.pdf > 0) Walk()(tracer_, lights, origin_, s.direction, [&](const LightSample& y) { add(y, rng, builder); });
+      if (s.pdf > 0)
+        Walk()(tracer_, lights, origin_, s.direction,
+               [&](const LightSample& y) { add(y, target_.incident(y), lights.pdf(y.light), rng, builder); });
     }
   }
 
  private:
-  void add(const LightSample& y, core::Rng& rng, ReservoirBuilder& builder) const {
-    const Incident in = target_.incident(y);
+  void addLightSamples(core::Rng& rng, ReservoirBuilder& builder) const {
+    const Lights& lights = target_.lights();
+    for (int i = 0; i < parameters_.lightSamples; ++i) {
+      if (tile_.empty()) {
+        const LightSample y = lights.sample(rng);
+        add(y, target_.incident(y), lights.pdf(y.light), rng, builder);
+      } else {
+        const core::PresampledLight& y = tile_[rng.below(LightTiles::kTileSize)];
+        add(y.sample, target_.incident(y), y.probability, rng, builder);
+      }
+    }
+  }
+
+  /// lightPdf: density with which light samples give y.
+  void add(const LightSample& y, const Incident& in, float lightPdf, core::Rng& rng, ReservoirBuilder& builder) const {
     const vec3 flux = in.flux();
     if (!(core::maxComponent(flux) > 0)) return;
     const BsdfValue bsdf = target_.bsdf().value(in.direction);
     const float target = core::luminance(bsdf.f * flux);
     const double bsdfPdf = target_.lights().isArea(y.light) ? double{bsdf.pdf} * in.geometry : 0.0;
-    const double density =
-        parameters_.lightSamples * double{target_.lights().pdf(y.light)} + parameters_.bsdfSamples * bsdfPdf;
+    const double density = parameters_.lightSamples * double{lightPdf} + parameters_.bsdfSamples * bsdfPdf;
     builder.add(y, target, target / (total_ * density), rng);  // [candidates 1]
   }
 
@@ -86,6 +104,7 @@ class Candidates {
   CandidateParameters parameters_;
   vec3 origin_;
   double total_;
+  std::span<const core::PresampledLight> tile_;
 };
 
 }  // namespace restir

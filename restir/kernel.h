@@ -15,11 +15,16 @@ inline std::uint32_t pixelIndex(const Frame& frame, int x, int y) {
   return static_cast<std::uint32_t>(y * frame.samples.width + x);
 }
 
-/// Calls body.template operator()<F>() for what the scene has, or for everything.
+/// What the scene has, or everything.
+inline LightFeatures lightFeatures(const RestirParameters& parameters, const Frame& frame) {
+  const bool all = parameters.features == Features::all;
+  return all ? LightFeatures{true, true} : frame.now.lights->features();
+}
+
+/// Calls body.template operator()<F>() for those.
 template <class Body>
 void withLightFeatures(const RestirParameters& parameters, const Frame& frame, Body&& body) {
-  const bool all = parameters.features == Features::all;
-  core::withFeatures(all ? LightFeatures{true, true} : frame.now.lights->features(), body);
+  core::withFeatures(lightFeatures(parameters, frame), body);
 }
 
 /// The same, and whether targets include visibility: body.template operator()<F, kVisibility>().

@@ -48,12 +48,23 @@ struct TemporalParameters {
   bool previousGeometry = true;  ///< only where targets include visibility
 };
 
+/// How two histories of reservoirs become one image (second.h). counts: least variance by the ledger, unbiased.
+/// measured: least variance by the images around a pixel. mean: half of each.
+enum class SecondBlend { counts, measured, mean };
+
+struct SecondParameters {
+  bool on = false;
+  twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 3};
+  SecondBlend blend = SecondBlend::counts;
+};
+
 struct RestirParameters {
   Reuse reuse = Reuse::both;
   Mis mis = Mis::balance;
   CandidateParameters candidates;
   TemporalParameters temporal;
   SpatialParameters spatial;
+  SecondParameters second;
   Features features = Features::automatic;
   /// Targets include the shadow ray of their own surface at their own instant (target.h), and the last one is reused
   /// for shading.
@@ -81,6 +92,7 @@ struct RestirState {
   /// Pixels since the start whose radiance was not finite; they counted as n = 0.
   std::int64_t badPixels() const { return bad; }
 
+  LightTiles lightTiles;
   Image<Reservoir> fresh, before, now;
   Image<Ledger<1>> ledgerBefore, ledgerNow;
   Image<Taps> taps;                     ///< the one tap that was chosen
@@ -93,6 +105,9 @@ struct RestirState {
 };
 
 void drawCandidates(const RestirParameters& parameters, const Frame& frame, RestirState& state);
+/// The same for a second history (second.h) of the frame: takes over the fresh reservoirs of `first`.
+void shareCandidates(const RestirParameters& parameters, const Frame& frame, const RestirState& first,
+                     RestirState& state);
 void reuseTemporally(const RestirParameters& parameters, const Frame& frame, RestirState& state);
 /// Luminance of one independent result a block of 2x2 pixels, shaded from the fresh reservoir alone: unbiased, and
 /// independent of every earlier frame, which reused samples are not. Negative in pixels that have none. To be called
@@ -108,6 +123,9 @@ template <class V>
 void describe(V& v, CandidateParameters& p) {
   v("lightSamples", p.lightSamples, "light samples a batch; a pixel of n samples draws n batches", 1, 4096);
   v("bsdfSamples", p.bsdfSamples, "BSDF samples a batch", 0, 4096);
+  v.choice("lightTiles", p.lightTiles,
+           {{"auto", TileUse::automatic}, {"always", TileUse::always}, {"never", TileUse::never}},
+           "light samples from tiles that blocks of pixels share; auto: where lights outgrow the cache");
 }
 
 template <class V>
@@ -132,6 +150,15 @@ void describe(V& v, SpatialParameters& p) {
 }
 
 template <class V>
+void describe(V& v, SecondParameters& p) {
+  v("on", p.on, "shade a second history of reservoirs too, and blend");
+  v("policy", p.policy, "how the second history is weighted and forgotten");
+  v.choice("blend", p.blend,
+           {{"counts", SecondBlend::counts}, {"measured", SecondBlend::measured}, {"mean", SecondBlend::mean}},
+           "least variance by counts (unbiased), by images around a pixel (a little biased), or half of each");
+}
+
+template <class V>
 void describe(V& v, RestirParameters& p) {
   v.choice("reuse", p.reuse,
            {{"none", Reuse::none}, {"temporal", Reuse::temporal}, {"spatial", Reuse::spatial}, {"both", Reuse::both}},
@@ -148,6 +175,7 @@ void describe(V& v, RestirParameters& p) {
   v("candidates", p.candidates, "fresh candidates");
   v("temporal", p.temporal, "reuse from the frame before");
   v("spatial", p.spatial, "reuse from neighbours");
+  v("second", p.second, "a second history of reservoirs");
 }
 
 }  // namespace restir

@@ -33,7 +33,8 @@ vec3 shadeSample(const Pixel<F, kVisibility>& pixel, const Reservoir& r, bool kn
 /// Resampled importance sampling alone: one batch.
 template <LightFeatures F, bool kVisibility>
 Reservoir drawBatch(const Pixel<F, kVisibility>& pixel, int result) {
-  const Candidates<F> candidates(pixel.target, pixel.surface, *pixel.frame.now.tracer, pixel.parameters.candidates, 1);
+  const Candidates<F> candidates(pixel.target, pixel.surface, *pixel.frame.now.tracer, pixel.parameters.candidates, 1,
+                                 pixel.state.lightTiles.of(pixel.at.x, pixel.at.y));
   core::Rng rng = pixel.rng(core::Pass::candidates, result);
   ReservoirBuilder builder;
   candidates.addBatch(rng, builder);

@@ -33,7 +33,11 @@ class Target<F, false> {
   /// p-hat(y) = luminance(f cos L_e G); 0 for no sample.
   float operator()(const LightSample& y) const { return y.valid() ? core::luminance(radiance(incident(y))) : 0.0f; }
 
-  Incident incident(const LightSample& y) const { return lights_->template incident<F>(y, position_); }
+  /// y: a LightSample or a PresampledLight.
+  template <class Y>
+  Incident incident(const Y& y) const {
+    return lights_->template incident<F>(y, position_);
+  }
   /// f cos L_e G, unshadowed.
   vec3 radiance(const Incident& in) const {
     const vec3 flux = in.flux();
