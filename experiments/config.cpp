@@ -59,12 +59,17 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
   config.shade.restir.features =
       config.render.features == Features::all ? restir::Features::all : restir::Features::automatic;
   baselineOf(config);
+  config.shade.diagnostics = config.output.diagnostics;
+  config.shade.restir.tellAll |= config.output.diagnostics;
   for (const Variant& v : variantsOf(config)) {
     config.shade.checkSamples |= v.blend.validation.on;
     config.shade.restir.tellAll |= v.told != restir::Told::samples;
   }
   requireDistinct(config);
   requireFiles(config);
+  if (config.shade.restir.second.on && config.shade.restir.reuse == restir::Reuse::none)
+    throw core::UsageError("config.restir.second.on", "without reuse there is no second history",
+                           "choose another restir.reuse, or switch it off");
   if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
   if (config.scenes.empty()) throw core::UsageError("config.scenes", "there is none", "give at least one");
   for (int frame : config.output.frames)

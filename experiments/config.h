@@ -37,9 +37,10 @@ void describe(V& v, ReferenceParameters& p) {
 }
 
 struct OutputParameters {
-  std::vector<int> frames;  ///< frames whose images are written and shown; empty = the last three with a reference
-  bool exr = true;          ///< EXR beside PNG
-  float exposure = 0;       ///< stops, of PNG images and of SSIM's tone map
+  std::vector<int> frames;   ///< frames whose images are written and shown; empty = the last three with a reference
+  bool exr = true;           ///< EXR beside PNG
+  float exposure = 0;        ///< stops, of PNG images and of SSIM's tone map
+  bool diagnostics = false;  ///< pictures of what reuse leaves behind, too
 };
 
 template <class V>
@@ -47,6 +48,7 @@ void describe(V& v, OutputParameters& p) {
   v("frames", p.frames, "frames whose images are written and shown in the report", 0.0, 1e6);
   v("exr", p.exr, "write EXR images beside PNG");
   v("exposure", p.exposure, "stops, for PNG images", -30.0, 30.0);
+  v("diagnostics", p.diagnostics, "pictures of sample age, confidence, duplicates and N_eff, too");
 }
 
 struct Config {

@@ -4,6 +4,7 @@
 
 #include "core/exr.h"
 #include "core/files.h"
+#include "experiments/reuse_pictures.h"
 
 namespace experiments {
 namespace {
@@ -48,6 +49,11 @@ void Gallery::add(const std::string& scene, const FrameImage& image) const {
                               pngBytes(errorPicture(*image.comparison, kErrorScale)));
 }
 
+void Gallery::addDiagnostics(const std::string& scene, int frame, const restir::Diagnostics& diagnostics) const {
+  std::filesystem::create_directories(folder_ / scene);
+  writeReusePictures(fileOf(scene, "raw", frame, ""), diagnostics, config_.output.exr);
+}
+
 void Gallery::addReference(const std::string& scene, int frame, core::PlanesView<const float> image) const {
   write(scene, "reference", frame, image, nullptr);
 }
@@ -65,6 +71,7 @@ std::vector<Figure> Gallery::figures(const std::string& scene, const std::vector
         fmt::format("{}, frame {}: reference, unfiltered frame, and every variant. Circle: the fovea.", scene, frame),
         frame,
         {panel("reference", fileOf(scene, "reference", frame, ".png"))},
+        {},
         {}};
     Figure errors{
         fmt::format("{}, frame {}: relative squared error of each pixel.", scene, frame), frame, {}, kErrorScale};
@@ -77,6 +84,20 @@ std::vector<Figure> Gallery::figures(const std::string& scene, const std::vector
       std::erase_if(figure->panels, [](const Panel& p) { return p.png.empty(); });
       if (!figure->panels.empty()) figures.push_back(std::move(*figure));
     }
+  }
+  for (Figure& figure : reuseFigures(scene)) figures.push_back(std::move(figure));
+  return figures;
+}
+
+std::vector<Figure> Gallery::reuseFigures(const std::string& scene) const {
+  std::vector<Figure> figures;
+  for (const ReuseQuantity& q : reuseQuantities()) {
+    Figure figure{fmt::format("{}: {}.", scene, q.meaning), 0, {}, q.scale, std::string(q.name) + " (logarithmic)"};
+    for (const int frame : galleryFrames(config_))
+      figure.panels.push_back(
+          panel(fmt::format("frame {}", frame), fileOf(scene, "raw", frame, fmt::format(".{}.png", q.name).c_str())));
+    std::erase_if(figure.panels, [](const Panel& p) { return p.png.empty(); });
+    if (!figure.panels.empty()) figures.push_back(std::move(figure));
   }
   return figures;
 }

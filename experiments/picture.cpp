@@ -27,7 +27,7 @@ void mix(Picture& picture, int x, int y, const core::vec3& colour, float share) 
 /// Share of a pixel that a line of a given half width covers, by its distance from the line's middle.
 float coverage(float distance, float halfWidth) { return std::clamp(halfWidth + 0.5f - distance, 0.0f, 1.0f); }
 
-constexpr core::vec3 kNotFinite{1, 0, 1};
+constexpr core::vec3 kNotFinite{1, 0, 1}, kNothing{0.35f, 0.35f, 0.35f};
 
 }  // namespace
 
@@ -59,6 +59,18 @@ Picture errorPicture(const Comparison& comparison, const ErrorScale& scale) {
   core::forEachPixel(picture.width, picture.height, [&](int x, int y) {
     const double error = std::max(std::abs(comparison.relativeError(x, y)), scale.low);
     store(picture, x, y, mapColour(std::log(error / scale.low) / span));
+  });
+  return picture;
+}
+
+Picture scalarPicture(core::In<float> values, const ErrorScale& scale) {
+  CHECK(scale.low > 0 && scale.low < scale.high);
+  Picture picture(values.width, values.height);
+  const double span = std::log(scale.high / scale.low);
+  core::forEachPixel(picture.width, picture.height, [&](int x, int y) {
+    const double value = values(x, y);
+    const bool shown = std::isfinite(value) && value > 0;
+    store(picture, x, y, shown ? mapColour(std::log(std::max(value, scale.low) / scale.low) / span) : kNothing);
   });
   return picture;
 }

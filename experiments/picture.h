@@ -23,7 +23,8 @@ struct Picture {
 /// Exposure in stops, then SSIM's tone map. Pixels that are not finite are magenta.
 Picture toneMappedPicture(const Colour& image, float stops = 0);
 
-/// Relative squared errors, 0 < low < high, that the ends of the colour map stand for; the scale is logarithmic.
+/// Values, 0 < low < high, that the ends of the colour map stand for; the scale is logarithmic. By default relative
+/// squared errors.
 struct ErrorScale {
   double low = 1e-4, high = 1;
 };
@@ -34,6 +35,9 @@ core::vec3 mapColour(double t);
 
 /// Relative squared error of every pixel on a logarithmic colour scale.
 Picture errorPicture(const Comparison& comparison, const ErrorScale& scale);
+
+/// Positive values on the same logarithmic colours; grey where a value is 0, negative or not finite.
+Picture scalarPicture(core::In<float> values, const ErrorScale& scale);
 
 /// Draws a circle with a dark rim, radius and centre in pixels; parts outside the picture are left out.
 void drawCircle(Picture& picture, core::vec2 centre, float radius, core::vec3 colour = core::vec3(1));

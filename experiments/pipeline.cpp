@@ -56,6 +56,8 @@ ShadeState::ShadeState(const Stage& stage, const ShadeParameters& p, std::uint64
       radiance_(width, height),
       albedo_(width, height) {
   static_cast<void>(stage);
+  if (p.restir.second.on) second_.emplace(width, height);
+  if (p.diagnostics) diagnostics_.emplace(width, height);
   for (Instant& i : instants_) i.gbuffer = core::GBuffer(width, height);
 }
 
@@ -87,6 +89,8 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
   if (checks) timed(t, "check samples", [&] { restir::shadeCheckSamples(p.restir, f, s.restir_, s.check_); });
   timed(t, "reuse temporally", [&] { restir::reuseTemporally(p.restir, f, s.restir_); });
   timed(t, "reuse spatially, shade", [&] { restir::reuseSpatiallyAndShade(p.restir, f, s.restir_, s.radiance_); });
+  if (s.second_) timed(t, "second history", [&] { s.second_->blendInto(p.restir, f, s.restir_, s.radiance_); });
+  if (s.diagnostics_) timed(t, "diagnostics", [&] { s.diagnostics_->update(p.restir, f, s.restir_); });
   timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });
 
   s.started_ = true;

@@ -10,7 +10,9 @@
 #include "experiments/stage.h"
 #include "experiments/stopwatch.h"
 #include "experiments/variant.h"
+#include "restir/diagnostics.h"
 #include "restir/restir.h"
+#include "restir/second.h"
 #include "twohistory/gradient.h"
 #include "twohistory/reprojection.h"
 
@@ -23,6 +25,7 @@ struct ShadeParameters {
   restir::RestirParameters restir;
   int tile = core::kDefaultTile;  ///< pixels on a side; results do not depend on it
   Features features = Features::automatic;
+  bool diagnostics = false;   ///< keep ShadeState::diagnostics(); needs restir.tellAll
   bool checkSamples = false;  ///< shade independent samples too, for variants that check their blend
 };
 
@@ -48,6 +51,8 @@ class ShadeState {
   core::In<std::uint8_t> fovea() const { return fovea_; }
   PassTimes& times() { return times_; }
   std::int64_t badPixels() const { return restir_.badPixels(); }
+  /// Null unless asked for.
+  const restir::Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 
  private:
   friend Shaded shade(const Stage& stage, const ShadeParameters& parameters, std::uint32_t frame, ShadeState& state);
@@ -62,6 +67,8 @@ class ShadeState {
   core::Image<std::uint8_t> fovea_;
   core::Image<twohistory::Taps> taps_;
   restir::RestirState restir_;
+  std::optional<restir::SecondHistory> second_;
+  std::optional<restir::Diagnostics> diagnostics_;
   core::Planes radiance_, albedo_;
   PassTimes times_;
 };

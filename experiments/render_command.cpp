@@ -14,6 +14,7 @@
 #include "experiments/pipeline.h"
 #include "experiments/progress.h"
 #include "experiments/reference.h"
+#include "experiments/reuse_pictures.h"
 #include "experiments/scene_source.h"
 #include "experiments/threads.h"
 
@@ -109,6 +110,9 @@ class FrameSource {
     if (!a.raw) filter_.emplace(variant_, config.width, config.height);
   }
 
+  /// Of the last frame; null unless asked for.
+  const restir::Diagnostics* diagnostics() const { return shading_ ? shading_->diagnostics() : nullptr; }
+
   /// Fills out; returns sample counts where a pixel without samples says nothing about the scene (raw frames).
   core::In<float> render(int frame, PlanesView<float> out) {
     const auto number = static_cast<std::uint32_t>(frame);
@@ -166,6 +170,8 @@ void render(const RenderArguments& a) {
   Progress progress(a.scene, config.frames);
   for (int frame = 0; frame < config.frames; ++frame) {
     const core::In<float> samples = source.render(frame, image);
+    if (const restir::Diagnostics* d = source.diagnostics())
+      writeReusePictures(numbered(output, frame, config.frames > 1).replace_extension(), *d, config.output.exr);
     if (a.mean)
       mean.add(image, samples);
     else

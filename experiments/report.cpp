@@ -74,8 +74,7 @@ std::string figureHtml(const Figure& figure) {
     html += fmt::format("<div class=\"panel\"><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><p>{0}</p></div>\n",
                         escaped(panel.label), base64(panel.png));
   html += "</div>\n";
-  if (figure.scale)
-    html += svgColourScale(figure.scale->low, figure.scale->high, "relative squared error of a pixel (logarithmic)");
+  if (figure.scale) html += svgColourScale(figure.scale->low, figure.scale->high, figure.scaleLabel);
   return html + "</figure>\n";
 }
 

@@ -22,7 +22,8 @@ struct Figure {
   std::string caption;  ///< says scene and frame
   int frame = 0;
   std::vector<Panel> panels;
-  std::optional<ErrorScale> scale;  ///< error maps: their common colour scale, drawn as a legend
+  std::optional<ErrorScale> scale;  ///< maps: their common colour scale, drawn as a legend
+  std::string scaleLabel = "relative squared error of a pixel (logarithmic)";
 };
 
 struct ReportData {

@@ -109,7 +109,10 @@ class Runner {
       return readPart(part);
     }
     SequenceHooks hooks;
-    if (seed == config_.seeds.front()) hooks.image = [&](const FrameImage& image) { gallery_.add(label, image); };
+    if (seed == config_.seeds.front()) {
+      hooks.image = [&](const FrameImage& image) { gallery_.add(label, image); };
+      hooks.diagnostics = [&](int frame, const restir::Diagnostics& d) { gallery_.addDiagnostics(label, frame, d); };
+    }
     hooks.frameDone = [&] { progress_->advance(1, label + ", seed " + std::to_string(seed)); };
     SequenceResult result = runSequence(stage, config_, variants_, label, seed, references, hooks);
     writePart(result, part);

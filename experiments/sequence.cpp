@@ -61,6 +61,8 @@ class Sequence {
     }
     const Reference* compared = truth ? &*truth : nullptr;
 
+    if (shading_.diagnostics() && hooks_.diagnostics && isShown(frame))
+      hooks_.diagnostics(frame, *shading_.diagnostics());
     remodulate(shaded.radiance, shaded, image_);
     measure(frame, kRaw, 0, compared);
     for (std::size_t v = 0; v < variants_.size(); ++v) {
@@ -68,6 +70,11 @@ class Sequence {
       filter(shaded, variants_[v], target, *filters_[v], image_);
       measure(frame, variants_[v].name, v + 1, compared);
     }
+  }
+
+  bool isShown(int frame) const {
+    const auto& wanted = config_.output.frames;
+    return std::find(wanted.begin(), wanted.end(), frame) != wanted.end();
   }
 
   /// Books the errors of image_ and hands it on.
@@ -78,8 +85,7 @@ class Sequence {
       comparison.emplace(image_, *reference, scene_ + ", " + variant + ", frame " + std::to_string(frame));
       for (const Region region : kRegions) addMetrics(frame, variant, region, *comparison);
     }
-    const auto& wanted = config_.output.frames;
-    if (hooks_.image && std::find(wanted.begin(), wanted.end(), frame) != wanted.end())
+    if (hooks_.image && isShown(frame))
       hooks_.image({frame, variant, image_, comparison ? &*comparison : nullptr, shading_.gaze()});
   }
 

@@ -22,7 +22,9 @@ struct FrameImage {
 
 struct SequenceHooks {
   std::function<void(const FrameImage&)> image;  ///< called for the frames in config.output.frames; may be empty
-  std::function<void()> frameDone;               ///< for progress; may be empty
+  /// Called for the same frames where the configuration asks for diagnostics; may be empty.
+  std::function<void(int frame, const restir::Diagnostics&)> diagnostics;
+  std::function<void()> frameDone;  ///< for progress; may be empty
 };
 
 /// What a sequence measured. Series: relMSE, SSIM and energy ratio by frame, variant and region; rows: sums over all
