@@ -39,7 +39,7 @@ void expectSameLight(core::Scene other) {
   const auto c = comparisonWith(std::move(other));
   EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
   EXPECT_LT(c.worst, core::sidakBound(tests::kPixels, 1e-6));
-  EXPECT_LT(c.detectable, 0.025);
+  EXPECT_LT(c.detectable, tests::detectableBias(0.025));
 }
 
 /// Cuts the quad of a mesh in two along its second side.

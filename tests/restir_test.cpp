@@ -36,7 +36,7 @@ void expectUnbiased(const World& world, const RestirParameters& p, int sequences
   const auto c =
       tests::compare(tests::estimate(world, p, sequences, hooks), tests::reference(world, 16, 512, hooks.compared));
   EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
-  EXPECT_LT(c.detectable, 0.02);
+  EXPECT_LT(c.detectable, tests::detectableBias(0.02));
 }
 void expectBiased(const World& world, const RestirParameters& p, int sequences, const Hooks& hooks = {}) {
   const auto c =
@@ -148,7 +148,7 @@ TEST(Restir, MeanOfManyResultsIsTheMeanOfOne) {
   const auto many = tests::estimate(world, wide(), 512, {[](int, int, int, const vec3&) { return 4.0f; }, {}});
   const auto c = tests::compare(many, one);
   EXPECT_LT(std::abs(c.z), kLargestZ) << c.ratio;
-  EXPECT_LT(c.detectable, 0.02);
+  EXPECT_LT(c.detectable, tests::detectableBias(0.02));
   EXPECT_LT(many.total.variance(), 0.7 * one.total.variance());
 }
 

@@ -166,6 +166,29 @@ TEST(TinyWorld, ConstantIsBiasedInSpaceAsPredicted) {
   }
 }
 
+/// How often, in the mean, a light is counted after merging with constant weights in time and then in space: each pixel
+/// finds what it sees now, from the shares of its inputs that saw it.
+double predictedInTimeAndSpace(int pixel) {
+  double sum = 0;
+  for (int y = 0; y < kLights; ++y)
+    for (int q = 0; q < 3; ++q) {
+      const double found = (2.0 * (kNow[q].values[y] > 0) + 5.0 * (kBefore[q].values[y] > 0)) / 7;
+      if (kNow[q].values[y] > 0) sum += found / 3 * double(kNow[pixel].values[y]) * kSees[pixel][y];
+    }
+  return sum;
+}
+
+TEST(TinyWorld, ConstantIsBiasedInTimeAndSpaceAsPredicted) {
+  for (int p = 0; p < 3; ++p) {
+    const auto m = average([&](core::Rng& rng) {
+      return shadePixel(p, spatial(p, Mis::constant, rng,
+                                   [&](int q) { return temporal(q, Mis::constant, rng, kBefore[q], kBefore[q]); }));
+    });
+    expectUnbiased(m, predictedInTimeAndSpace(p));
+    expectBiased(m, exact(p));
+  }
+}
+
 TEST(TinyWorld, WaitingReservoirNeedsTheTargetItHad) {
   // Two frames old after a frame with n = 0. The last frame's target in its place has another support.
   const auto remembered =

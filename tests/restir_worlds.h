@@ -3,6 +3,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -184,10 +186,19 @@ struct Estimate {
   }
 };
 
+/// How many times over sequences and references are rendered: TWOFOLD_THOROUGH, which slow runs of fast tests set.
+inline int thoroughness() {
+  const char* text = std::getenv("TWOFOLD_THOROUGH");
+  return text ? std::max(1, std::atoi(text)) : 1;
+}
+/// The bias that a test must detect half of the time, if that is `usual` with as many sequences as it asks for.
+inline double detectableBias(double usual) { return usual / std::sqrt(thoroughness()); }
+
 /// Sequences of seeds firstSeed, ...; batches of them run in parallel and are added in order.
 inline Estimate estimate(const World& world, const restir::RestirParameters& p, int count, const Hooks& hooks = {},
                          std::uint64_t firstSeed = 1) {
   constexpr int kBatch = 16;
+  count *= thoroughness();
   Estimate result(world.width() * world.height());
   std::vector<core::Planes> images(kBatch);
   for (int first = 0; first < count; first += kBatch) {
@@ -207,6 +218,7 @@ inline Estimate reference(const World& world, int images = 64, int samples = 102
   const core::Moment now = world.moment(world.frames() - 1);
   Estimate result(world.width() * world.height());
   core::Planes image(world.width(), world.height());
+  images *= thoroughness();
   for (int i = 0; i < images; ++i) {
     core::forEachPixel(world.width(), world.height(), [&](int x, int y) {
       const auto pixel = static_cast<std::uint32_t>(y * world.width() + x);

@@ -34,7 +34,7 @@ tests::Comparison comparisonOf(const World& world, const RestirParameters& p, in
 void expectUnbiased(const World& world, const RestirParameters& p, int sequences, const Hooks& hooks = {}) {
   const auto c = comparisonOf(world, p, sequences, hooks);
   EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
-  EXPECT_LT(c.detectable, 0.02);
+  EXPECT_LT(c.detectable, tests::detectableBias(0.02));
 }
 void expectBiased(const World& world, const RestirParameters& p, int sequences, const Hooks& hooks = {}) {
   const auto c = comparisonOf(world, p, sequences, hooks);

@@ -42,7 +42,7 @@ tests::Comparison comparisonOf(const World& world, const RestirParameters& p, co
 void expectUnbiased(const World& world, const RestirParameters& p, const Hooks& hooks, int sequences = 512) {
   const auto c = comparisonOf(world, p, hooks, sequences);
   EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
-  EXPECT_LT(c.detectable, 0.02);
+  EXPECT_LT(c.detectable, tests::detectableBias(0.02));
 }
 
 Motion ofLight() {
