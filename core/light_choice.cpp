@@ -1,3 +1,4 @@
+// Drawing lights in one of three ways.
 #include "core/light_choice.h"
 
 namespace core {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kParallel = 4096;  // lights from which on two halves are worth two tasks
 
-/// Intensity straight ahead of a light of unit power, in the units of Lights: what [tree 1] multiplies.
+/// weight: of a light's power, what leaves straight ahead; power is over all sides and directions, as Lights counts it.
 LightItem triangleItem(const Lights& lights, std::uint32_t i) {
   const TriangleLight& t = lights.triangle(i);
   Bounds box;
@@ -73,7 +73,8 @@ class LightTreeBuilder {
   Range left(const Range& r) const { return {r.node + 1, r.begin, split_[r.node]}; }
   Range right(const Range& r) const { return {r.node + 2 * (split_[r.node] - r.begin), split_[r.node], r.end}; }
 
-  /// The largest of two, then three ranges is divided again.
+  /// The largest of two, then three ranges is divided again, unless it fits into one node. (So how at most four lights
+  /// are divided never matters.)
   Children childrenOf(const Range& r) const {
     if (r.size() == 1) return {{r}, 1};
     Children c{{left(r), right(r)}, 2};
@@ -81,7 +82,7 @@ class LightTreeBuilder {
       const auto end = c.range.begin() + c.count;
       const auto largest =
           std::max_element(c.range.begin(), end, [](const Range& a, const Range& b) { return a.size() < b.size(); });
-      if (largest->size() == 1) break;
+      if (largest->size() <= (r.size() <= 4 ? 1u : 4u)) break;
       const Range parent = *largest;
       std::move_backward(largest + 1, end, end + 1);
       *largest = left(parent);
@@ -99,7 +100,8 @@ class LightTreeBuilder {
 
   void divide(const Range& r) {
     if (r.size() == 1) return;
-    split_[r.node] = r.begin + static_cast<std::uint32_t>(splitLights(std::span(items_).subspan(r.begin, r.size())));
+    split_[r.node] = r.begin + static_cast<std::uint32_t>(
+                                   r.size() <= 4 ? 1 : splitLights(std::span(items_).subspan(r.begin, r.size())));
     forBoth(r.size(), 2, [&](std::size_t i) { divide(i == 0 ? left(r) : right(r)); });
     std::uint32_t nodes = 1;
     const Children children = childrenOf(r);

@@ -56,10 +56,10 @@ core::Scene manyKinds() {
 }
 
 TEST(Baselines, GiveTheLightThatIsThere) {
-  const World world(manyKinds(), 2);
+  const World world(manyKinds(), 1);
   const tests::Estimate truth = tests::reference(world, 32, 512);
   for (const WithoutReuse without : kBaselines) {
-    const auto c = tests::compare(tests::estimate(world, baseline(without), 2048), truth);
+    const auto c = tests::compare(tests::estimate(world, baseline(without), 8192), truth);
     EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
     EXPECT_LT(c.worst, core::sidakBound(tests::kPixels, 1e-6));
     EXPECT_LT(c.detectable, 0.02);
@@ -206,8 +206,8 @@ TEST(Baselines, DarkWorldsAreBlack) {
 /// What withoutReuse becomes under settings; nothing where they are an error.
 std::optional<WithoutReuse> configured(const std::vector<std::string>& assignments) {
   try {
-    const experiments::Config config = experiments::configFrom(experiments::Json::object(), assignments);
-    return config.shade.restir.withoutReuse;
+    const experiments::Config defaults;
+    return experiments::configFrom(experiments::Json::object(), assignments, defaults).shade.restir.withoutReuse;
   } catch (const core::UsageError&) {
     return {};
   }
