@@ -166,8 +166,10 @@ void Lights::drawBy(const std::vector<float>& power) {
 
 LightSample Lights::sampleAt(std::uint32_t binBits, std::uint32_t keepBits, vec2 uv) const {
   if (table_.empty()) return {};
-  return {table_.sample(binBits, keepBits), toBarycentric(uv)};
+  return pointOn(table_.sample(binBits, keepBits), uv);
 }
+
+LightSample Lights::pointOn(std::uint32_t light, vec2 uv) const { return {light, toBarycentric(uv)}; }
 
 Incident Lights::fromPunctual(const PunctualState& light, const vec3& position) const {
   if (light.type == PunctualLight::Type::directional) return {-light.direction, kInfinity, light.intensity, 1};

@@ -117,6 +117,14 @@ class Lights {
   /// True for lights that a ray can hit.
   bool isArea(std::uint32_t light) const { return light < triangles_.size(); }
   const TriangleLight& triangle(std::uint32_t light) const { return triangles_[light]; }
+  /// light >= triangleCount().
+  const PunctualState& punctual(std::uint32_t light) const { return punctual_[light - triangles_.size()]; }
+  /// True for lights that have a direction but no place.
+  bool isInfinite(std::uint32_t light) const {
+    return !isArea(light) && punctual(light).type == PunctualLight::Type::directional;
+  }
+  /// The point of a light that two uniform numbers stand for.
+  LightSample pointOn(std::uint32_t light, vec2 uv) const;
 
   /// Light arriving at position from s, ignoring occlusion; radiance 0 where s cannot shine there. F: what the scene
   /// has.

@@ -48,6 +48,12 @@ void requireFiles(const Config& config) {
                            "name an OpenEXR file, or choose another foveation.kind");
 }
 
+void requireReuseOrBaseline(const restir::RestirParameters& p) {
+  if (p.withoutReuse != restir::WithoutReuse::ris && p.reuse != restir::Reuse::none)
+    throw core::UsageError("config.restir.withoutReuse", "a baseline without reuse is asked for, and reuse too",
+                           "set restir.reuse=none, or leave restir.withoutReuse at ris");
+}
+
 }  // namespace
 
 Config configFrom(Json json, const std::vector<std::string>& assignments, const Config& defaults) {
@@ -65,6 +71,7 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
     config.shade.checkSamples |= v.blend.validation.on;
     config.shade.restir.tellAll |= v.told != restir::Told::samples;
   }
+  requireReuseOrBaseline(config.shade.restir);
   requireDistinct(config);
   requireFiles(config);
   if (config.shade.restir.second.on && config.shade.restir.reuse == restir::Reuse::none)

@@ -47,6 +47,17 @@ Reservoir drawPixel(const RestirParameters& p, const Frame& frame, const LightTi
   return r;
 }
 
+core::LightSampler samplerOf(WithoutReuse without) {
+  if (without == WithoutReuse::uniform) return core::LightSampler::uniform;
+  return without == WithoutReuse::tree ? core::LightSampler::tree : core::LightSampler::power;
+}
+
+void prepareLightChoice(const RestirParameters& p, const Frame& frame, RestirState& state) {
+  if (state.lightChoice && state.drawnLights == frame.now.lights) return;
+  state.drawnLights = frame.now.lights;
+  state.lightChoice = std::make_shared<core::LightChoice>(*frame.now.lights, samplerOf(p.withoutReuse));
+}
+
 }  // namespace
 
 RestirState::RestirState(int width, int height)
@@ -65,10 +76,11 @@ void shareCandidates(const RestirParameters& p, const Frame& frame, const Restir
 
 void drawCandidates(const RestirParameters& p, const Frame& frame, RestirState& state) {
   beginFrame(frame, p.targetVisibility, state);
+  if (drawsLights(p)) return prepareLightChoice(p, frame, state);
   state.lightTiles.fill(p.candidates.lightTiles, *frame.now.lights, lightFeatures(p, frame),
                         std::int64_t{frame.samples.width} * frame.samples.height * p.candidates.lightSamples,
                         frame.seed, frame.now.frame);
-  if (p.reuse == Reuse::none) return;  // shading draws its own, a reservoir a result
+  if (p.reuse == Reuse::none) return;  // shading draws its own, a result at a time
   withLightFeatures(p, frame, [&]<LightFeatures F>() {
     core::forEachPixel(
         frame.samples.width, frame.samples.height,

@@ -14,6 +14,7 @@ using core::LightFeatures;
 using core::Lights;
 using core::LightSample;
 using core::Rng;
+using core::vec2;
 using core::vec3;
 
 /// A surface, its reflection to the camera, and what lights it.
@@ -22,24 +23,27 @@ struct Receiver {
   core::Bsdf bsdf;
   vec3 origin;
   const Lights& lights;
+  const core::LightChoice& choice;  // of lights
   const core::Tracer& tracer;
 };
 
-/// f cos L_e G over the densities of both techniques: what either adds to the estimate, before visibility.
-template <LightFeatures F>
-vec3 weighted(const Receiver& r, const LightSample& y, const Incident& in) {
+/// f cos L_e G over the densities of both techniques: what either adds to the estimate, before visibility. lightPdf: of
+/// y by light sampling; called only where y shines.
+template <class LightPdf>
+vec3 weighted(const Receiver& r, const LightSample& y, const Incident& in, LightPdf&& lightPdf) {
   const vec3 flux = in.flux();
   if (!(core::maxComponent(flux) > 0)) return vec3(0);
   const core::BsdfValue bsdf = r.bsdf.value(in.direction);
   const float bsdfPdf = r.lights.isArea(y.light) ? bsdf.pdf * in.geometry : 0.0f;
-  return bsdf.f * flux / (r.lights.pdf(y.light) + bsdfPdf);  // [Veach 97, 9.2.2] balance heuristic, one sample each
+  return bsdf.f * flux / (lightPdf() + bsdfPdf);  // [Veach 97, 9.2.2] balance heuristic, one sample each
 }
 
 template <LightFeatures F>
-vec3 lightSample(const Receiver& r, const std::array<std::uint32_t, 3>& u, std::uint32_t keepBits) {
-  const LightSample y = r.lights.sampleAt(u[0], keepBits, {Lattice3::uniform(u[1]), Lattice3::uniform(u[2])});
-  const Incident in = r.lights.template incident<F>(y, r.surface.position);
-  const vec3 value = weighted<F>(r, y, in);
+vec3 lightSample(const Receiver& r, const std::array<std::uint32_t, 3>& u, std::uint32_t lowBits) {
+  const vec2 uv(Lattice3::uniform(u[1]), Lattice3::uniform(u[2]));
+  const core::LightDraw drawn = r.choice.sample(r.surface.position, r.surface.normal, u[0], lowBits, uv);
+  const Incident in = r.lights.template incident<F>(drawn.sample, r.surface.position);
+  const vec3 value = weighted(r, drawn.sample, in, [&] { return drawn.pdf; });
   return core::maxComponent(value) > 0 && visible(r.tracer, r.surface, in) ? value : vec3(0);
 }
 
@@ -51,12 +55,12 @@ vec3 bsdfSample(const Receiver& r, const std::array<std::uint32_t, 3>& u) {
   const std::uint32_t light = hit.hit() ? r.lights.lightOf(hit.instance, hit.primitive) : core::kNoLight;
   if (light == core::kNoLight) return vec3(0);
   const LightSample y{light, hit.barycentric};
-  return weighted<F>(r, y, r.lights.template incident<F>(y, r.surface.position));
+  return weighted(r, y, r.lights.template incident<F>(y, r.surface.position),
+                  [&] { return r.choice.pdf(y, r.surface.position, r.surface.normal); });
 }
 
 template <LightFeatures F>
-vec3 mean(const Receiver& r, int samples, std::uint64_t stream, std::uint32_t pixel, std::uint32_t frame) {
-  Rng rng(stream, core::Pass::reference, pixel, frame);
+vec3 mean(const Receiver& r, int samples, Rng& rng) {
   const Lattice3 lightPoints(rng), bsdfPoints(rng);
   vec3 sum(0);
   for (int i = 0; i < samples; ++i) {
@@ -68,17 +72,25 @@ vec3 mean(const Receiver& r, int samples, std::uint64_t stream, std::uint32_t pi
 
 }  // namespace
 
-vec3 meanDirect(const core::Moment& moment, const core::Surface& surface, int samples, std::uint64_t stream,
-                std::uint32_t pixel) {
+vec3 meanDirect(const core::Moment& moment, const core::Surface& surface, const core::LightChoice& choice, int samples,
+                Rng rng) {
   CHECK_GE(samples, 1);
   if (!surface.hit() || moment.lights->empty()) return vec3(0);
-  const Receiver receiver{surface, core::Bsdf(surface, normalize(moment.cameraPosition - surface.position)),
-                          core::offsetOrigin(surface.position, surface.geometricNormal), *moment.lights,
+  const Receiver receiver{surface,
+                          core::Bsdf(surface, normalize(moment.cameraPosition - surface.position)),
+                          core::offsetOrigin(surface.position, surface.geometricNormal),
+                          *moment.lights,
+                          choice,
                           *moment.tracer};
   vec3 result(0);
-  core::withFeatures(moment.lights->features(),
-                     [&]<LightFeatures F>() { result = mean<F>(receiver, samples, stream, pixel, moment.frame); });
+  core::withFeatures(moment.lights->features(), [&]<LightFeatures F>() { result = mean<F>(receiver, samples, rng); });
   return result;
+}
+
+vec3 meanDirect(const core::Moment& moment, const core::Surface& surface, int samples, std::uint64_t stream,
+                std::uint32_t pixel) {
+  const core::LightChoice byPower(*moment.lights, core::LightSampler::power);
+  return meanDirect(moment, surface, byPower, samples, {stream, core::Pass::reference, pixel, moment.frame});
 }
 
 }  // namespace restir

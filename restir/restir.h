@@ -13,6 +13,7 @@
 #pragma once
 
 #include "core/image.h"
+#include "core/light_choice.h"
 #include "core/moment.h"
 #include "core/parallel.h"
 #include "restir/candidates.h"
@@ -33,8 +34,12 @@ using twohistory::Choice;
 using twohistory::Ledger;
 using twohistory::Taps;
 
-/// none: resampled importance sampling alone, n independent results a pixel.
+/// none: n independent results a pixel, each as WithoutReuse says.
 enum class Reuse { none, temporal, spatial, both };
+
+/// ris: a result is one reservoir, resampled from its candidates. The others are baselines: a result is one light
+/// sample, drawn in that way, and one BSDF sample, each with a ray, combined by the balance heuristic (direct.h).
+enum class WithoutReuse { ris, uniform, power, tree };
 
 /// automatic: kernels are compiled for the lights that the scene has. all: for every kind, to measure what that costs.
 enum class Features { automatic, all };
@@ -60,6 +65,7 @@ struct SecondParameters {
 
 struct RestirParameters {
   Reuse reuse = Reuse::both;
+  WithoutReuse withoutReuse = WithoutReuse::ris;  ///< anything else needs Reuse::none
   Mis mis = Mis::balance;
   CandidateParameters candidates;
   TemporalParameters temporal;
@@ -102,8 +108,17 @@ struct RestirState {
   PastMoments past;
   bool waitsBefore = false, waits = false;  ///< some pixel of the frame had n = 0
   std::int64_t bad = 0;
+  std::shared_ptr<const Lights> drawnLights;             ///< what lightChoice draws from
+  std::shared_ptr<const core::LightChoice> lightChoice;  ///< null unless a baseline draws lights
 };
 
+/// True where a baseline takes the place of reservoirs.
+inline bool drawsLights(const RestirParameters& p) {
+  return p.reuse == Reuse::none && p.withoutReuse != WithoutReuse::ris;
+}
+
+/// Where nothing is reused: draws no candidate, but builds what a baseline draws lights from, once for every change of
+/// the lights.
 void drawCandidates(const RestirParameters& parameters, const Frame& frame, RestirState& state);
 /// The same for a second history (second.h) of the frame: takes over the fresh reservoirs of `first`.
 void shareCandidates(const RestirParameters& parameters, const Frame& frame, const RestirState& first,
@@ -162,7 +177,13 @@ template <class V>
 void describe(V& v, RestirParameters& p) {
   v.choice("reuse", p.reuse,
            {{"none", Reuse::none}, {"temporal", Reuse::temporal}, {"spatial", Reuse::spatial}, {"both", Reuse::both}},
-           "of reservoirs; none is resampled importance sampling alone");
+           "of reservoirs; none: n independent results a pixel");
+  v.choice("withoutReuse", p.withoutReuse,
+           {{"ris", WithoutReuse::ris},
+            {"uniform", WithoutReuse::uniform},
+            {"power", WithoutReuse::power},
+            {"tree", WithoutReuse::tree}},
+           "results where reuse is none: reservoirs, or a light and a BSDF sample each, lights drawn so");
   v.choice("mis", p.mis,
            {{"constant", Mis::constant},
             {"contribution", Mis::contribution},

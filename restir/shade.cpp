@@ -1,4 +1,5 @@
 // Spatial reuse and shading: n results a pixel, each with neighbours and a shadow ray of its own, averaged.
+#include "restir/direct.h"
 #include "restir/kernel.h"
 #include "restir/visibility.h"
 
@@ -70,6 +71,13 @@ vec3 shadePixel(const Pixel<F, kVisibility>& pixel, int batches) {
   return sum / static_cast<float>(batches);
 }
 
+/// A baseline: no reservoir takes part.
+vec3 shadeByLights(const Frame& frame, const RestirState& state, const Surface& surface, int samples,
+                   std::uint32_t pixel) {
+  const core::Rng rng(frame.seed, core::Pass::shade, pixel, frame.now.frame);
+  return meanDirect(frame.now, surface, *state.lightChoice, samples, rng);
+}
+
 /// [told] for a pixel that was shaded with n samples; 0 for one that was not.
 void tellPixel(const RestirParameters& p, float n, RestirState& state, int x, int y) {
   const Ledger<1>& ledger = state.ledgerNow(x, y);
@@ -88,9 +96,12 @@ void storePixel(const RestirParameters& p, const Frame& frame, RestirState& stat
   const int batches = surface.hit() ? batchesOf(frame.samples(x, y)) : 0;
   vec3 colour(0);
   if (batches > 0) {
-    const Pixel<F, kVisibility> pixel{p,      frame,   state,
-                                      {x, y}, surface, partsOf(frame, x, y).template target<F, kVisibility>()};
-    colour = shadePixel(pixel, batches);
+    colour = drawsLights(p)
+                 ? shadeByLights(frame, state, surface, batches, pixelIndex(frame, x, y))
+                 : shadePixel(
+                       Pixel<F, kVisibility>{
+                           p, frame, state, {x, y}, surface, partsOf(frame, x, y).template target<F, kVisibility>()},
+                       batches);
     if (p.demodulate) colour /= core::demodulationAlbedo(surface);
   }
   const bool good = core::isFinite(colour);
