@@ -63,15 +63,19 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
     config.shade.checkSamples |= v.blend.validation.on;
     config.shade.restir.tellAll |= v.told != restir::Told::samples;
   }
-  requireDistinct(config);
-  requireFiles(config);
-  if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
-  if (config.scenes.empty()) throw core::UsageError("config.scenes", "there is none", "give at least one");
+  requireConsistent(config);
   for (int frame : config.output.frames)
     if (frame >= config.frames)
       throw core::UsageError("config.output.frames", "frame " + std::to_string(frame) + " is not rendered",
                              "frames count from 0 to config.frames - 1");
   return config;
+}
+
+void requireConsistent(const Config& config) {
+  requireDistinct(config);
+  requireFiles(config);
+  if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
+  if (config.scenes.empty()) throw core::UsageError("config.scenes", "there is none", "give at least one");
 }
 
 std::vector<Variant> variantsOf(const Config& config) {
