@@ -159,18 +159,17 @@ std::string plots(const std::vector<std::string>& all) {
 
 std::string explanation(const Findings& f) {
   return "<p>A point is a method at one number n of samples a pixel: milliseconds a frame of the passes that sample "
-         "light "
-         "(median over frames; poses, surfaces and reprojection, which all methods share, are left out), and the error "
-         "of "
-         "the unfiltered image. Points are geometric means over seeds, whiskers and brackets 95 % intervals (Student's "
-         "t "
-         "on logarithms). Times to the error of <b>" +
+         "light (median over frames; poses, surfaces and reprojection, which all methods share, are left out), and the "
+         "error of the unfiltered image. Points are geometric means over seeds, whiskers and brackets 95 % intervals "
+         "(Student's t on logarithms). Intervals do not hold the reference's own error, which all methods "
+         "share.</p>\n<p>Times to the error of <b>" +
          escaped(f.target) +
-         "</b> lie on straight lines between points in both logarithms, seed by seed; dashed lines and *: not measured "
-         "but "
-         "extrapolated (independent samples: error falls as 1/n, every further sample takes the same time) or a bound. "
-         "The best baseline is the one with the least time. Intervals do not hold the reference's own error, which all "
-         "methods share.</p>\n";
+         "</b> lie on straight lines between points in both logarithms, seed by seed. Dashed lines and * are not "
+         "measured but extrapolated: of independent samples, error falls as 1/n and every further sample takes the "
+         "same "
+         "time. Where a method's slope in n is flatter than -1, as it is for trimmed means, that favours the method. "
+         "\u201cAt most\u201d and \u201cat least\u201d are bounds. The best baseline is the one with the least "
+         "time.</p>\n";
 }
 
 }  // namespace
