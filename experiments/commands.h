@@ -13,6 +13,7 @@ void addRenderCommand(CLI::App& app);
 void addCompareCommand(CLI::App& app);
 void addSceneCommand(CLI::App& app);
 void addLabCommand(CLI::App& app);
+void addEfficiencyCommand(CLI::App& app);
 void addPredictCommand(CLI::App& app);
 
 }  // namespace experiments

@@ -26,6 +26,7 @@ std::string metricMeaning(const std::string& name) {
        "border left out. Higher is better, 1 is equal"},
       {"energy_ratio", "mean luminance over that of the reference. 1 is right"},
       {"clamped_energy", "luminance that the firefly clamp took away, as a share of the unfiltered frames'"},
+      {"milliseconds", "wall-clock time a frame of the passes that sample light, median over frames. Lower is better"},
       {"bytes_per_pixel", "memory that a variant keeps or reuses between frames"},
       {"energy_over_raw", "mean luminance over that of the unfiltered frame, both over the whole sequence. 1 is right"},
       {"MSE", "mean of (y - r1)(y - r2). Lower is better"},

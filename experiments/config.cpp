@@ -48,13 +48,17 @@ void requireFiles(const Config& config) {
                            "name an OpenEXR file, or choose another foveation.kind");
 }
 
-void requireReuseOrBaseline(const restir::RestirParameters& p) {
-  if (p.withoutReuse != restir::WithoutReuse::ris && p.reuse != restir::Reuse::none)
-    throw core::UsageError("config.restir.withoutReuse", "a baseline without reuse is asked for, and reuse too",
-                           "set restir.reuse=none, or leave restir.withoutReuse at ris");
-}
-
 }  // namespace
+
+void requireConsistent(const restir::RestirParameters& p, const std::string& path) {
+  const bool reuses = p.reuse != restir::Reuse::none;
+  if (p.withoutReuse != restir::WithoutReuse::ris && reuses)
+    throw core::UsageError(path + ".withoutReuse", "a baseline without reuse is asked for, and reuse too",
+                           "set restir.reuse=none, or leave restir.withoutReuse at ris");
+  if (p.second.on && !reuses)
+    throw core::UsageError(path + ".second.on", "without reuse there is no second history",
+                           "choose another restir.reuse, or switch it off");
+}
 
 Config configFrom(Json json, const std::vector<std::string>& assignments, const Config& defaults) {
   applyAssignments(json, assignments);
@@ -71,19 +75,20 @@ Config configFrom(Json json, const std::vector<std::string>& assignments, const 
     config.shade.checkSamples |= v.blend.validation.on;
     config.shade.restir.tellAll |= v.told != restir::Told::samples;
   }
-  requireReuseOrBaseline(config.shade.restir);
-  requireDistinct(config);
-  requireFiles(config);
-  if (config.shade.restir.second.on && config.shade.restir.reuse == restir::Reuse::none)
-    throw core::UsageError("config.restir.second.on", "without reuse there is no second history",
-                           "choose another restir.reuse, or switch it off");
-  if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
-  if (config.scenes.empty()) throw core::UsageError("config.scenes", "there is none", "give at least one");
+  requireConsistent(config.shade.restir, "config.restir");
+  requireConsistent(config);
   for (int frame : config.output.frames)
     if (frame >= config.frames)
       throw core::UsageError("config.output.frames", "frame " + std::to_string(frame) + " is not rendered",
                              "frames count from 0 to config.frames - 1");
   return config;
+}
+
+void requireConsistent(const Config& config) {
+  requireDistinct(config);
+  requireFiles(config);
+  if (config.seeds.empty()) throw core::UsageError("config.seeds", "there is none", "give at least one");
+  if (config.scenes.empty()) throw core::UsageError("config.scenes", "there is none", "give at least one");
 }
 
 std::vector<Variant> variantsOf(const Config& config) {

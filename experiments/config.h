@@ -92,6 +92,12 @@ std::vector<Variant> variantsOf(const Config& config);
 /// The variant that ratios are against. Throws core::UsageError where the one named is not there.
 std::string baselineOf(const Config& config);
 
+/// Throws core::UsageError, naming the key under path, where settings of ReSTIR contradict each other.
+void requireConsistent(const restir::RestirParameters& parameters, const std::string& path);
+
+/// Throws core::UsageError where scenes or seeds are missing or come twice, or a file is asked for but not named.
+void requireConsistent(const Config& config);
+
 /// True for frames that have a reference: every `every`-th, and the last.
 bool hasReference(const Config& config, int frame);
 

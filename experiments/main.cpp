@@ -28,6 +28,7 @@ void addCommands(CLI::App& app) {
   experiments::addCompareCommand(app);
   experiments::addSceneCommand(app);
   experiments::addLabCommand(app);
+  experiments::addEfficiencyCommand(app);
   experiments::addPredictCommand(app);
 }
 

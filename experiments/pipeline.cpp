@@ -10,13 +10,6 @@ using core::Planes;
 using core::PlanesView;
 using core::vec3;
 
-void fillAlbedo(In<core::Surface> surfaces, PlanesView<float> out) {
-  core::forEachPixel(surfaces.width, surfaces.height, [&](int x, int y) {
-    const core::Surface& s = surfaces(x, y);
-    out.store(x, y, s.hit() ? core::demodulationAlbedo(s) : vec3(1));
-  });
-}
-
 bool usesGradient(twohistory::BlendMode mode) {
   return mode == twohistory::BlendMode::seed || mode == twohistory::BlendMode::seedSlide;
 }
@@ -44,64 +37,85 @@ twohistory::Histories<K> historiesOf(const svgf::FilterState<K>& s, const Planes
 
 }  // namespace
 
+View::View(int width, int height) : taps_(width, height) {
+  for (Instant& i : instants_) i.gbuffer = core::GBuffer(width, height);
+}
+
+void see(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, View& v, PassTimes& t) {
+  const Instant* past = v.frames_ > 0 ? &v.now() : nullptr;
+  v.now_ = 1 - v.now_;
+  ++v.frames_;
+  Instant& now = v.instants_[v.now_];
+  const Instant& before = v.before();
+  timed(t, "pose scene", [&] { stage.pose(frame, past, now); });
+  timed(t, "trace G-buffer", [&] { stage.trace(before.pose, p.features, p.tile, now); });
+  timed(t, "reproject", [&] {
+    if (past)
+      twohistory::reproject(now.gbuffer.guide.view(), before.gbuffer.guide.view(), p.reprojection, v.taps_);
+    else
+      v.taps_.fill({});
+  });
+}
+
+void shadeLights(const restir::RestirParameters& p, const restir::Frame& f, const Reservoirs& reservoirs,
+                 core::ImageView<float> check, PlanesView<float> radiance, PassTimes& t) {
+  restir::RestirState& s = reservoirs.first;
+  timed(t, "draw candidates", [&] { restir::drawCandidates(p, f, s); });
+  if (!check.empty()) timed(t, "check samples", [&] { restir::shadeCheckSamples(p, f, s, check); });
+  timed(t, "reuse temporally", [&] { restir::reuseTemporally(p, f, s); });
+  timed(t, "reuse spatially, shade", [&] { restir::reuseSpatiallyAndShade(p, f, s, radiance); });
+  if (reservoirs.second) timed(t, "second history", [&] { reservoirs.second->blendInto(p, f, s, radiance); });
+}
+
+void fillAlbedo(In<core::Surface> surfaces, PlanesView<float> out) {
+  core::forEachPixel(surfaces.width, surfaces.height, [&](int x, int y) {
+    const core::Surface& s = surfaces(x, y);
+    out.store(x, y, s.hit() ? core::demodulationAlbedo(s) : vec3(1));
+  });
+}
+
 ShadeState::ShadeState(const Stage& stage, const ShadeParameters& p, std::uint64_t seed, int width, int height)
     : seed_(seed),
       gaze_(p.gaze),
       foveation_(p.foveation),
+      view_(width, height),
       samples_(width, height),
       check_(p.checkSamples ? width : 0, p.checkSamples ? height : 0),
       fovea_(width, height),
-      taps_(width, height),
       restir_(width, height),
       radiance_(width, height),
       albedo_(width, height) {
   static_cast<void>(stage);
   if (p.restir.second.on) second_.emplace(width, height);
   if (p.diagnostics) diagnostics_.emplace(width, height);
-  for (Instant& i : instants_) i.gbuffer = core::GBuffer(width, height);
 }
 
 Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, ShadeState& s) {
-  const Instant* past = s.started_ ? &s.instants_[s.now_] : nullptr;
-  s.now_ = 1 - s.now_;
-  Instant& now = s.instants_[s.now_];
-  const Instant& before = s.started_ ? s.before() : now;
   PassTimes& t = s.times_;
   const int width = s.samples_.width(), height = s.samples_.height();
-
   timed(t, "place samples", [&] {
     s.gazeNow_ = s.gaze_.at(frame / kFramesPerSecond, width, height);
     s.foveation_.place(s.gazeNow_, s.seed_, frame, s.samples_, s.fovea_);
   });
-  timed(t, "pose scene", [&] { stage.pose(frame, past, now); });
-  timed(t, "trace G-buffer", [&] { stage.trace(before.pose, p.features, p.tile, now); });
-  timed(t, "reproject", [&] {
-    if (s.started_)
-      twohistory::reproject(now.gbuffer.guide.view(), before.gbuffer.guide.view(), p.reprojection, s.taps_);
-    else
-      s.taps_.fill({});
-  });
+  see(stage, p, frame, s.view_, t);
+  const Instant &now = s.now(), &before = s.before();
 
   const core::Moment momentNow = now.moment(), momentBefore = before.moment();
-  const restir::Frame f{momentNow, momentBefore, s.samples_, s.taps_, s.seed_, p.tile};
-  timed(t, "draw candidates", [&] { restir::drawCandidates(p.restir, f, s.restir_); });
+  const restir::Frame f{momentNow, momentBefore, s.samples_, s.view_.taps(), s.seed_, p.tile};
   const bool checks = p.checkSamples && p.restir.reuse != restir::Reuse::none;  // else radiance itself is independent
-  if (checks) timed(t, "check samples", [&] { restir::shadeCheckSamples(p.restir, f, s.restir_, s.check_); });
-  timed(t, "reuse temporally", [&] { restir::reuseTemporally(p.restir, f, s.restir_); });
-  timed(t, "reuse spatially, shade", [&] { restir::reuseSpatiallyAndShade(p.restir, f, s.restir_, s.radiance_); });
-  if (s.second_) timed(t, "second history", [&] { s.second_->blendInto(p.restir, f, s.restir_, s.radiance_); });
+  const core::ImageView<float> check = checks ? s.check_.view() : core::ImageView<float>{};
+  shadeLights(p.restir, f, {s.restir_, s.second_ ? &*s.second_ : nullptr}, check, s.radiance_, t);
   if (s.diagnostics_) timed(t, "diagnostics", [&] { s.diagnostics_->update(p.restir, f, s.restir_); });
   timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });
 
-  s.started_ = true;
   return {s.radiance_,
           s.albedo_,
           now.gbuffer.emission,
           s.restir_.shaded,
           now.gbuffer.guide.view(),
           before.gbuffer.guide.view(),
-          checks ? s.check_.view() : In<float>{},
-          s.taps_,
+          check,
+          s.view_.taps(),
           s.restir_.confidence,
           s.restir_.effective};
 }

@@ -40,13 +40,49 @@ struct Shaded {
   core::In<float> confidence{}, effective{};  ///< for variants that are told so instead of samples; may be empty
 };
 
+/// What is seen of a frame and of the one before, before any light is sampled: poses, surfaces, and where they were.
+class View {
+ public:
+  View(int width, int height);
+
+  const Instant& now() const { return instants_[now_]; }
+  /// Equal to now() in the first frame.
+  const Instant& before() const { return instants_[frames_ > 1 ? 1 - now_ : now_]; }
+  core::In<twohistory::Taps> taps() const { return taps_; }
+
+ private:
+  friend void see(const Stage& stage, const ShadeParameters& parameters, std::uint32_t frame, View& view,
+                  PassTimes& times);
+  int now_ = 0;
+  std::int64_t frames_ = 0;
+  std::array<Instant, 2> instants_;
+  core::Image<twohistory::Taps> taps_;
+};
+
+/// Goes on to frame `frame`; frames must come in order, from any first one.
+void see(const Stage& stage, const ShadeParameters& parameters, std::uint32_t frame, View& view, PassTimes& times);
+
+/// What sampling light keeps from frame to frame. second: null where there is one history.
+struct Reservoirs {
+  restir::RestirState& first;
+  restir::SecondHistory* second = nullptr;
+};
+
+/// The passes that sample light: candidates, reuse, shading. check: gets luminances of independent results (see
+/// restir::shadeCheckSamples); empty = none are wanted.
+void shadeLights(const restir::RestirParameters& parameters, const restir::Frame& frame, const Reservoirs& reservoirs,
+                 core::ImageView<float> check, core::PlanesView<float> radiance, PassTimes& times);
+
+/// Albedo that radiance of a surface is divided by; 1 where there is none.
+void fillAlbedo(core::In<core::Surface> surfaces, core::PlanesView<float> out);
+
 /// What shading keeps from frame to frame, for one seed.
 class ShadeState {
  public:
   ShadeState(const Stage& stage, const ShadeParameters& parameters, std::uint64_t seed, int width, int height);
 
-  const Instant& now() const { return instants_[now_]; }
-  const Instant& before() const { return instants_[1 - now_]; }
+  const Instant& now() const { return view_.now(); }
+  const Instant& before() const { return view_.before(); }
   core::vec2 gaze() const { return gazeNow_; }
   core::In<std::uint8_t> fovea() const { return fovea_; }
   PassTimes& times() { return times_; }
@@ -60,12 +96,9 @@ class ShadeState {
   core::Gaze gaze_;
   core::Foveation foveation_;
   core::vec2 gazeNow_{0};
-  int now_ = 0;
-  bool started_ = false;
-  std::array<Instant, 2> instants_;
+  View view_;
   core::Image<float> samples_, check_;
   core::Image<std::uint8_t> fovea_;
-  core::Image<twohistory::Taps> taps_;
   restir::RestirState restir_;
   std::optional<restir::SecondHistory> second_;
   std::optional<restir::Diagnostics> diagnostics_;

@@ -47,8 +47,16 @@ struct Extent {
   }
 };
 
-bool drawable(const Line& line, std::size_t i, bool logarithmic) {
-  return std::isfinite(line.x[i]) && std::isfinite(line.y[i]) && (!logarithmic || line.y[i] > 0);
+bool drawable(double v, bool logarithmic) { return std::isfinite(v) && (!logarithmic || v > 0); }
+
+bool drawable(const LinePlot& plot, const Line& line, std::size_t i) {
+  return drawable(line.x[i], plot.logarithmicX) && drawable(line.y[i], plot.logarithmic);
+}
+
+/// Whether a point has an interval that can be drawn.
+bool hasWhisker(const LinePlot& plot, const Line& line, std::size_t i) {
+  return i < line.low.size() && i < line.high.size() && drawable(line.low[i], plot.logarithmic) &&
+         drawable(line.high[i], plot.logarithmic);
 }
 
 std::string text(double x, double y, const std::string& anchor, const std::string& content, const char* extra = "") {
@@ -66,14 +74,18 @@ std::string open(double width, double height, const std::string& label) {
                      height, width, escaped(label));
 }
 
-std::string polyline(const Line& line, const Axis& x, const Axis& y, bool logarithmic) {
+std::string polyline(const LinePlot& plot, const Line& line, const Axis& x, const Axis& y) {
   std::string path, marks;
   bool pen = false;
   for (std::size_t i = 0; i < line.x.size(); ++i) {
-    const bool shown = drawable(line, i, logarithmic);
+    const bool shown = drawable(plot, line, i);
     if (shown) {
-      path += fmt::format("{}{:.1f} {:.1f}", pen ? "L" : "M", x.at(line.x[i]), y.at(line.y[i]));
-      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>", x.at(line.x[i]), y.at(line.y[i]));
+      const double px = x.at(line.x[i]), py = y.at(line.y[i]);
+      path += fmt::format("{}{:.1f} {:.1f}", pen ? "L" : "M", px, py);
+      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>", px, py);
+      if (hasWhisker(plot, line, i))
+        marks += fmt::format("<path class=\"whisker\" d=\"M{0:.1f} {1:.1f}L{0:.1f} {2:.1f}\"/>", px, y.at(line.low[i]),
+                             y.at(line.high[i]));
     }
     pen = shown;
   }
@@ -97,6 +109,7 @@ std::string frameOf(const LinePlot& plot, const Axis& x, const Axis& y) {
     svg += text(kLeft - 8, y.at(tick) + 4.5, "end", shortNumber(tick));
   }
   for (const double tick : x.ticks()) {
+    if (plot.logarithmicX) svg += rule(x.at(tick), kTop, x.at(tick), kHeight - kBottom, "grid");
     svg += rule(x.at(tick), kHeight - kBottom, x.at(tick), kHeight - kBottom + 5, "axis");
     svg += text(x.at(tick), kHeight - kBottom + 19, "middle", shortNumber(tick));
   }
@@ -127,16 +140,18 @@ std::string barRow(const StackedBars& plot, std::size_t bar, const Axis& x, doub
 std::string svgLinePlot(const LinePlot& plot) {
   Extent xs, ys;
   for (const Line& line : plot.lines)
-    for (std::size_t i = 0; i < line.x.size(); ++i)
-      if (drawable(line, i, plot.logarithmic)) xs.add(line.x[i]), ys.add(line.y[i]);
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      if (!drawable(plot, line, i)) continue;
+      xs.add(line.x[i]), ys.add(line.y[i]);
+      if (hasWhisker(plot, line, i)) ys.add(line.low[i]), ys.add(line.high[i]);
+    }
   if (xs.empty()) return "";
-  xs = xs.padded(false), ys = ys.padded(plot.logarithmic);
-  const Axis x(xs.low, xs.high, kLeft, kWidth - kRight, false);
+  xs = xs.padded(plot.logarithmicX), ys = ys.padded(plot.logarithmic);
+  const Axis x(xs.low, xs.high, kLeft, kWidth - kRight, plot.logarithmicX);
   const Axis y(ys.low, ys.high, kHeight - kBottom, kTop, plot.logarithmic);
   std::string svg = open(kWidth, kHeight, plot.title + ": " + plot.yLabel) + frameOf(plot, x, y);
   for (const Line& line : plot.lines)
-    svg += plot.labelled && drawable(line, 0, plot.logarithmic) ? labelledPoint(line, x, y)
-                                                                : polyline(line, x, y, plot.logarithmic);
+    svg += plot.labelled && drawable(plot, line, 0) ? labelledPoint(line, x, y) : polyline(plot, line, x, y);
   return svg + "</svg>\n";
 }
 

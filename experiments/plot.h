@@ -11,13 +11,15 @@ struct Line {
   std::string label;
   std::size_t style = 0;  ///< see seriesClass()
   std::vector<double> x, y;
+  std::vector<double> low{}, high{};  ///< intervals of y, drawn as whiskers; empty = none
 };
 
 struct LinePlot {
   std::string title, xLabel, yLabel;
   bool logarithmic = true;  ///< y axis
   std::vector<Line> lines;
-  bool labelled = false;  ///< lines of one point each: their labels stand beside them
+  bool labelled = false;      ///< lines of one point each: their labels stand beside them
+  bool logarithmicX = false;  ///< x axis, which then has grid lines too
 };
 
 /// An empty string if there is no point to draw.

@@ -31,6 +31,7 @@ svg { max-width: 100%; height: auto; } svg text { fill: var(--ink); font-size: 1
 svg .grid { stroke: var(--rule); } svg .axis { stroke: var(--faint); }
 .line path { fill: none; stroke: var(--c); stroke-width: 2; stroke-dasharray: var(--dash); } .line circle { fill:
   var(--c); }
+.line path.whisker { opacity: .5; stroke-dasharray: none; stroke-width: 1.5; }
 rect.bar { fill: var(--c); }
 .s0, .s8 { --c: var(--s0); } .s1, .s9 { --c: var(--s1); } .s2, .s10 { --c: var(--s2); } .s3, .s11 { --c: var(--s3); }
 .s4, .s12 { --c: var(--s4); } .s5, .s13 { --c: var(--s5); } .s6, .s14 { --c: var(--s6); } .s7, .s15 { --c: var(--s7);

@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "core/files.h"
+#include "core/statistics.h"
 #include "experiments/json_text.h"
 #include "experiments/names.h"
 #include "experiments/summary.h"
@@ -123,6 +124,19 @@ std::vector<Row> meansOverFrames(const std::vector<FrameValue>& series) {
     rows.push_back(std::move(sum.row));
   }
   return rows;
+}
+
+std::vector<PassTime> medianPasses(const std::vector<PassTime>& passes) {
+  std::vector<PassTime> merged;
+  std::vector<std::vector<double>> times;
+  std::map<std::tuple<std::string, std::string, std::string>, std::size_t> index;
+  for (const PassTime& p : passes) {
+    const auto [at, isNew] = index.try_emplace({p.scene, p.variant, p.pass}, merged.size());
+    if (isNew) merged.push_back(p), times.emplace_back();
+    times[at->second].push_back(p.ms);
+  }
+  for (std::size_t i = 0; i < merged.size(); ++i) merged[i].ms = core::median(times[i]);
+  return merged;
 }
 
 void sortCanonically(Results& results) {

@@ -46,6 +46,10 @@ struct Results {
 /// Rows that hold the mean over frames of each sequence in `series`, frames without a value left out.
 std::vector<Row> meansOverFrames(const std::vector<FrameValue>& series);
 
+/// One row a scene, variant and pass, in the order of first appearance: the median of those given (one a seed, since
+/// seeds render the same work).
+std::vector<PassTime> medianPasses(const std::vector<PassTime>& passes);
+
 /// Sorts rows and series by scene, variant, seed, region, metric (and frame); names in the order of first appearance
 /// in rows, seeds ascending. What is equal in content then gives equal bytes.
 void sortCanonically(Results& results);

@@ -5,16 +5,12 @@
 #include <map>
 #include <optional>
 
-#include "core/files.h"
-#include "core/random.h"
-#include "core/statistics.h"
 #include "experiments/gallery.h"
-#include "experiments/json_text.h"
+#include "experiments/parts.h"
 #include "experiments/progress.h"
 #include "experiments/report.h"
 #include "experiments/scene_source.h"
 #include "experiments/scenes/builtin.h"
-#include "experiments/sequence.h"
 
 namespace experiments {
 namespace {
@@ -37,12 +33,15 @@ class Runner {
 
   Results run() {
     loadFiles();
-    makeFolder(folder_ / "parts");
+    Json identity = toJson(config_);
+    identity.erase("seeds");
+    identity.erase("scenes");
+    parts_.emplace(folder_ / "parts", std::move(identity));
     const auto sequences = static_cast<std::int64_t>(config_.scenes.size() * config_.seeds.size());
     progress_.emplace("frames", sequences * config_.frames + referenceSteps() * std::ssize(config_.scenes));
     for (const std::string& scene : config_.scenes) runScene(scene);
     progress_.reset();
-    averagePasses();
+    results_.passes = medianPasses(results_.passes);
     const std::vector<Row> means = meansOverFrames(results_.series);
     results_.rows.insert(results_.rows.end(), means.begin(), means.end());
     sortCanonically(results_);
@@ -68,12 +67,6 @@ class Runner {
   void loadFiles() {
     for (const std::string& source : config_.scenes)
       if (!isBuiltin(source)) files_.emplace(source, loadScene(source));
-  }
-
-  static void makeFolder(const fs::path& folder) {
-    std::error_code error;
-    fs::create_directories(folder, error);
-    if (error) throw core::Error(folder.string(), error.message(), "name a folder that can be written");
   }
 
   void runScene(const std::string& source) {
@@ -103,10 +96,9 @@ class Runner {
 
   SequenceResult sequence(const Stage& stage, const std::string& label, const std::string& hash, std::uint64_t seed,
                           References& references) {
-    const fs::path part = partFile(label, hash, seed);
-    if (fs::exists(part)) {
+    if (std::optional<SequenceResult> part = parts_->read(label, hash, seed)) {
       progress_->skip(config_.frames);
-      return readPart(part);
+      return std::move(*part);
     }
     SequenceHooks hooks;
     if (seed == config_.seeds.front()) {
@@ -115,33 +107,8 @@ class Runner {
     }
     hooks.frameDone = [&] { progress_->advance(1, label + ", seed " + std::to_string(seed)); };
     SequenceResult result = runSequence(stage, config_, variants_, label, seed, references, hooks);
-    writePart(result, part);
+    parts_->write(result, label, hash, seed);
     return result;
-  }
-
-  /// Parts are named by everything that decides their content, so a changed configuration never reuses one.
-  fs::path partFile(const std::string& label, const std::string& hash, std::uint64_t seed) const {
-    Json identity = toJson(config_);
-    identity.erase("seeds");
-    identity.erase("scenes");
-    identity["version"] = results_.provenance.version + results_.provenance.commit;
-    const std::uint64_t key = core::mixBits(std::hash<std::string>{}(identity.dump() + hash));
-    return folder_ / "parts" / fmt::format("{}-{}-{:016x}.json", label, seed, key);
-  }
-
-  /// A part is a results file of one sequence.
-  static void writePart(const SequenceResult& result, const fs::path& file) {
-    Results part;
-    part.rows = result.rows;
-    part.series = result.series;
-    part.passes = result.passes;
-    part.config["badPixels"] = result.badPixels;
-    core::writeFileAtomically(file, resultsJson(part).dump());
-  }
-  static SequenceResult readPart(const fs::path& file) {
-    Results part = loadResults(file);
-    return {std::move(part.rows), std::move(part.series), std::move(part.passes),
-            part.config.value("badPixels", std::int64_t{0})};
   }
 
   void add(const std::string& label, SequenceResult result) {
@@ -153,22 +120,6 @@ class Runner {
           fmt::format("{}: {} pixels were not finite and counted as frames without samples", label, result.badPixels));
   }
 
-  /// Seeds render the same work: one row a pass, the median over seeds.
-  void averagePasses() {
-    std::vector<PassTime> merged;
-    std::vector<std::vector<double>> times;
-    for (const PassTime& p : results_.passes) {
-      std::size_t i = 0;
-      while (i < merged.size() &&
-             !(merged[i].scene == p.scene && merged[i].variant == p.variant && merged[i].pass == p.pass))
-        ++i;
-      if (i == merged.size()) merged.push_back(p), times.emplace_back();
-      times[i].push_back(p.ms);
-    }
-    for (std::size_t i = 0; i < merged.size(); ++i) merged[i].ms = core::median(times[i]);
-    results_.passes = std::move(merged);
-  }
-
   Config config_;
   fs::path folder_;
   std::vector<Variant> variants_;
@@ -177,6 +128,7 @@ class Runner {
   std::vector<Figure> figures_;
   std::vector<std::string> notes_;
   std::map<std::string, core::Scene> files_;  ///< scenes loaded from files, until they are run
+  std::optional<Parts> parts_;
   std::optional<Progress> progress_;
 };
 

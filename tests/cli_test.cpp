@@ -57,7 +57,7 @@ class Cli : public testing::Test {
 TEST_F(Cli, HelpIsForEverySubcommand) {
   const Outcome all = run("--help");
   EXPECT_EQ(all.code, 0);
-  for (const char* command : {"run", "render", "compare", "scene", "predict"}) {
+  for (const char* command : {"run", "render", "compare", "scene", "lab", "efficiency", "predict"}) {
     EXPECT_NE(all.out.find(command), std::string::npos) << command;
     const Outcome one = run(std::string(command) + " --help");
     EXPECT_EQ(one.code, 0) << command;
@@ -210,6 +210,20 @@ TEST_F(Cli, RunRefusesNamesThatCollideOrEscape) {
        {"'seeds=[1,1]'", "baseline=nosuch", R"('scenes=["cornell","cornell"]')",
         R"('variants=["unweighted","unweighted"]')", R"('variants=["unweighted",{"like":"seed","name":"../evil"}]')"})
     expectUsageError(base + wrong);
+  EXPECT_FALSE(fs::exists(file("results")));
+}
+
+TEST_F(Cli, EfficiencyRefusesWrongConfigurations) {
+  const std::string output = " -o '" + file("results") + "' ";
+  write("unknown.json", R"({"no_such_key": 1})");
+  expectUsageError("efficiency '" + file("unknown.json") + "'" + output, "no_such_key");
+  expectUsageError("efficiency '" + file("absent.json") + "'" + output);
+  for (const char* wrong : {"methods=[]", "counts=[0]", "counts=[2,1]", "target=nosuch", "'seeds=[1,1]'", "frames=0",
+                            "methods.0.name=balance", "methods.0.restir.reuse=some"})
+    expectUsageError("efficiency" + output + "--set " + wrong);
+  expectUsageError("efficiency --threads -1" + output);
+  write("text.gltf", "this is no scene");
+  expectFailure("efficiency" + output + R"(--set 'scenes=[")" + file("text.gltf") + R"("]')", 1, "text.gltf");
   EXPECT_FALSE(fs::exists(file("results")));
 }
 

@@ -10,6 +10,7 @@
 #include "experiments/config.h"
 #include "experiments/lab/measure.h"
 #include "experiments/lab/overview.h"
+#include "experiments/parts.h"
 #include "experiments/progress.h"
 #include "experiments/report.h"
 
@@ -126,9 +127,7 @@ Results runLab(const LabConfig& config) {
 }
 
 Results runLab(const LabConfig& config, const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) throw core::Error(folder.string(), error.message(), "name a folder that can be written");
+  makeFolder(folder);
   Results results = runLab(config);
   saveResults(results, folder);
   saveReport({"Twofold laboratory: " + folder.filename().string(), results, {}, overviewHtml(results), {}},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/scene.h"
@@ -20,6 +21,8 @@ core::Scene cornellScene();
 core::Scene ajarScene();
 /// A hall with N small lamps, `lamps-N`; throws UsageError where N is not a whole number from 1 to 4,000,000.
 core::Scene lampsScene(const std::string& name);
+/// N of `lamps-N`; 0 for every other name.
+int lampsIn(std::string_view name);
 /// Whether a name asks for it, with whatever number.
 bool isLamps(const std::string& name);
 /// A night market: many small lights of all colours, some flickering, some moving, over a wet street.

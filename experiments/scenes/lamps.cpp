@@ -20,15 +20,6 @@ constexpr float kWidth = 40, kDepth = 30, kHeight = 7;  // of the hall, metres
 constexpr int kTexels = 16;                             // on a side
 constexpr float kBrightest = 300;                       // radiance of a white texel
 
-/// N, or 0 where the name is none of ours.
-int lampsIn(std::string_view name) {
-  if (!name.starts_with(kPrefix)) return 0;
-  name.remove_prefix(kPrefix.size());
-  int count = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), count);
-  return error == std::errc{} && end == name.data() + name.size() && count >= 1 && count <= kMostLamps ? count : 0;
-}
-
 /// Colours of two decades of brightness.
 core::Texture lampColours() {
   core::Texture t{kTexels, kTexels, std::vector<std::uint8_t>(4 * kTexels * kTexels, 255)};
@@ -104,6 +95,14 @@ void addPillars(SceneBuilder& scene) {
 }
 
 }  // namespace
+
+int lampsIn(std::string_view name) {
+  if (!name.starts_with(kPrefix)) return 0;
+  name.remove_prefix(kPrefix.size());
+  int count = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), count);
+  return error == std::errc{} && end == name.data() + name.size() && count >= 1 && count <= kMostLamps ? count : 0;
+}
 
 bool isLamps(const std::string& name) {
   return name.starts_with(kPrefix) && name.find_first_of("./\\") == std::string::npos;  // no file
