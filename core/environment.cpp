@@ -48,10 +48,11 @@ void Environment::fillTexels(PlanesView<const float> image, const std::string& w
   for (int y = 0; y < height(); ++y)
     for (int x = 0; x < width(); ++x) {
       const vec3 c = scale * image.load(x, y);
-      if (!(isFinite(c) && c.r >= 0 && c.g >= 0 && c.b >= 0))
-        throw Error(where, "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is negative or not finite",
-                    "radiance must be finite and at least 0: clean the image");
-      texels_(x, y) = c;
+      if (!isFinite(c))
+        throw Error(where, "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ") is not finite",
+                    "replace it in the image");
+      texels_(x, y) = glm::max(c, vec3(0));
+      negatives_ += texels_(x, y) != c;
     }
 }
 

@@ -23,14 +23,16 @@ namespace core {
 class Environment {
  public:
   /// image: linear RGB radiance, times scale. where: the name that errors give. Throws Error where the image is empty,
-  /// or a value is negative or not finite (scaled or not). An image that is black everywhere is allowed: it gives no
-  /// light.
+  /// or a value is not finite (scaled or not). Negative values, as lossy compression leaves them, count as 0. An image
+  /// that is black everywhere is allowed: it gives no light.
   Environment(PlanesView<const float> image, const std::string& where, float scale = 1);
 
   int width() const { return texels_.width(); }
   int height() const { return texels_.height(); }
   /// True if no direction shines.
   bool black() const { return rows_.empty(); }
+  /// Pixels of the image that had a negative value.
+  std::int64_t negatives() const { return negatives_; }
   /// Mean over the sphere of directions; times 4 pi, what arrives at a point from everywhere.
   double meanLuminance() const { return meanLuminance_; }
   /// All texels, row by row.
@@ -61,6 +63,7 @@ class Environment {
   AliasTable rows_;
   std::vector<AliasTable> columns_;  // a row; empty where it is black
   double meanLuminance_ = 0;
+  std::int64_t negatives_ = 0;
 };
 
 /// Reads an OpenEXR or Radiance HDR image, told apart by their first bytes; relative paths start at the working

@@ -45,6 +45,9 @@ core::Scene loadBuiltin(const std::string& name, std::filesystem::path folder) {
 std::shared_ptr<const core::Environment> environmentOf(const SceneParameters& p) {
   if (p.environment.empty()) return nullptr;
   auto environment = core::loadEnvironment(p.environment, p.environmentScale);
+  if (environment->negatives() > 0)
+    fmt::print(stderr, "twofold: {}: {} pixels have negative values, which count as 0\n", p.environment,
+               environment->negatives());
   if (environment->black()) fmt::print(stderr, "twofold: {}: it is black: it gives no light\n", p.environment);
   return environment;
 }

@@ -23,7 +23,7 @@ void describe(V& v, SceneParameters& p) {
   v("environmentScale", p.environmentScale, "factor on the map's radiance", 1e-9, 1e9);
 }
 
-/// The map that the parameters name, null for none. Prints a warning where it is black. Throws core::Error.
+/// The map that the parameters name, null for none. Prints warnings: black, negative values. Throws core::Error.
 std::shared_ptr<const core::Environment> environmentOf(const SceneParameters& p);
 
 /// A glTF file, or a built-in scene. A built-in one is written to folder as .glb and loaded from there, so that it goes

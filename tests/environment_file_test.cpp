@@ -165,9 +165,9 @@ TEST_F(EnvironmentFile, WhatIsNoPictureIsAnErrorThatSaysWhy) {
   depth.add("Z", core::Image<float>(4, 2));
   core::writeExr(file("depth.exr"), depth);
   says(errorOf(file("depth.exr")), "no channel R");
-  core::Planes negative(4, 2, 1.0f);
-  negative.view().plane[2](3, 0) = -0.5f;
-  says(errorOf(writeExr("negative.exr", negative)), "pixel (3, 0) is negative or not finite");
+  core::Planes spoiled(4, 2, 1.0f);
+  spoiled.view().plane[2](3, 0) = std::nanf("1");
+  says(errorOf(writeExr("nan.exr", spoiled)), "pixel (3, 0) is not finite");
 }
 
 TEST_F(EnvironmentFile, ReadsASharedImage) {
@@ -177,6 +177,7 @@ TEST_F(EnvironmentFile, ReadsASharedImage) {
   const auto map = core::loadEnvironment(path);
   EXPECT_EQ(map->width(), 512);
   EXPECT_GT(map->meanLuminance(), 0);
+  EXPECT_GT(map->negatives(), 0);  // its lossy compression left some
 }
 
 TEST_F(EnvironmentFile, IsPartOfTheScenesHash) {
@@ -207,11 +208,12 @@ TEST_F(EnvironmentFile, BrokenOnesEndRenderAndRunWithOneLineAndNoFile) {
   infinite.view().plane[0](1, 1) = core::kInfinity;
   writeExr("infinite.exr", infinite);
   write("text.exr", "no image");
-  write("cut.hdr", tests::hdrBytes(picture.pixels, 40, HdrCoding::newRuns, picture.size()).substr(0, 200));
+  const std::string whole = tests::hdrBytes(picture.pixels, 40, HdrCoding::newRuns, picture.size());
+  write("cut.hdr", whole.substr(0, whole.size() - 1));
   write("config.json", R"({"scenes":["cornell"],"frames":1,"width":8,"height":8})");
   for (const char* name : {"infinite.exr", "text.exr", "cut.hdr", "absent.exr"}) {
     const std::string set = " --set scene.environment='" + file(name) + "' -o '";
-    for (const std::string& command : {"render cornell" + set + file("out.exr") + "'",
+    for (const std::string& command : {"render cornell --resolution 8x8" + set + file("out.exr") + "'",
                                        "run '" + file("config.json") + "'" + set + file("out") + "'"}) {
       const auto [code, errors] = runProgram(command, file("errors.txt"));
       EXPECT_EQ(code, 1) << command << errors;

@@ -48,7 +48,7 @@ double quadrature(const core::Surface& s, const vec3& viewer, const core::Planes
   return sum / width / height;
 }
 
-/// Every fifth pixel of a floor under a map against quadrature, by a test that would notice 3 %.
+/// Every fifth pixel of a floor under a map against quadrature, by a test that would notice 5 %.
 void expectQuadrature(const core::Material& floor, const core::Planes& map, int steps) {
   const World world = floorUnder(floor, map);
   const core::Moment now = world.moment(0);
@@ -57,11 +57,11 @@ void expectQuadrature(const core::Material& floor, const core::Planes& map, int 
     const core::Surface& s = now.surfaces.at(i);
     if (!s.hit()) continue;
     core::RunningMoments moments;
-    for (std::uint64_t stream = 0; stream < 32; ++stream)
+    for (std::uint64_t stream = 0; stream < 64; ++stream)
       moments.add(core::luminance(restir::meanDirect(now, s, 512, stream, i)));
     const double expected = quadrature(s, now.cameraPosition, map, steps), error = std::sqrt(moments.meanVariance());
     EXPECT_LT(std::abs(moments.mean() - expected), kLargestZ * error + 1e-3 * expected) << i;
-    EXPECT_GT(std::abs(moments.mean() - 1.03 * expected), kLargestZ * error + 1e-3 * expected) << i;
+    EXPECT_GT(std::abs(moments.mean() - 1.05 * expected), kLargestZ * error + 1e-3 * expected) << i;
     ++tested;
   }
   EXPECT_GT(tested, 20);
@@ -79,16 +79,11 @@ TEST(EnvironmentDirect, ASunOfOneTexelIsItsQuadrature) {
 TEST(EnvironmentDirect, WhiteSurfacesInAWhiteFurnaceReturnTheirAlbedo) {
   core::Material white = tests::matte();
   white.baseColor = vec3(1);
-  const core::Planes map(16, 8, 1.0f);
-  const World world = floorUnder(white, map);
-  const core::Moment now = world.moment(0);
-  for (std::uint32_t i = 0; i < tests::kPixels; i += 7) {
-    const core::Surface& s = now.surfaces.at(i);
-    if (!s.hit()) continue;
-    const double albedo = quadrature(s, now.cameraPosition, map, 40);  // of this material, which is not quite white
-    EXPECT_NEAR(core::luminance(restir::meanDirect(now, s, 4096, 5, i)) / albedo, 1, 2e-3);
-    EXPECT_NEAR(albedo, 1, 0.05);
-  }
+  expectQuadrature(white, core::Planes(16, 8, 1.0f), 20);
+  // The material itself is nearly white: rough GGX without multiple scattering keeps 93 %.
+  const World world = floorUnder(white, core::Planes(16, 8, 1.0f));
+  const core::Surface& s = world.moment(0).surfaces.at(tests::kPixels / 2);
+  EXPECT_NEAR(quadrature(s, world.moment(0).cameraPosition, core::Planes(16, 8, 1.0f), 40), 0.928, 0.002);
 }
 
 /// What is not compared: pixels that see no surface of the scene.
@@ -146,40 +141,62 @@ RestirParameters wide(Mis mis = Mis::balance, bool visibility = false) {
   return p;
 }
 
-TEST(EnvironmentDirect, IsTheSameMapTessellated) {
-  const core::Planes map = tests::noiseMap(12, 6, 0.02f, 3);
-  for (const bool lamps : {false, true}) {
-    const World triangles(tessellated(worldUnder(map, lamps)), 1), image(worldUnder(map, lamps), 1),
-        turned(worldUnder(tests::turnedMap(map, 1), lamps), 1);
-    const auto truth = tests::reference(triangles, 32, 512, hitsOf(image));
-    const auto same = tests::compare(tests::reference(image, 32, 512, hitsOf(image)), truth);
-    const auto other = tests::compare(tests::reference(turned, 32, 512, hitsOf(image)), truth);
-    const double worst = core::sidakBound(tests::kPixels, 1e-6);
-    std::printf("lamps %d: ratio %.5f, z %.2f, worst pixel %.2f of %.2f, detects %.4f; turned: worst pixel %.1f\n",
-                lamps, same.ratio, same.z, same.worst, worst, same.detectable, other.worst);
-    EXPECT_LT(std::abs(same.z), kLargestZ);
-    EXPECT_LT(same.worst, worst);
-    EXPECT_LT(same.detectable, 0.005);
-    EXPECT_GT(other.worst, worst);  // control
+/// Light of two worlds of one geometry together. Triangles of that size leave lamps no share of the samples, so each is
+/// rendered alone.
+tests::Estimate referenceOfSum(const World& a, const World& b, int images, int samples,
+                               const std::function<bool(int, int)>& compared) {
+  const core::Moment ofA = a.moment(0), ofB = b.moment(0);
+  tests::Estimate result;
+  core::Planes image(tests::kWidth, tests::kHeight);
+  for (int i = 0; i < images; ++i) {
+    core::forEachPixel(tests::kWidth, tests::kHeight, [&](int x, int y) {
+      const auto pixel = static_cast<std::uint32_t>(y * tests::kWidth + x);
+      image.view().store(x, y,
+                         restir::meanDirect(ofA, ofA.surfaces(x, y), samples, 1000 + i, pixel) +
+                             restir::meanDirect(ofB, ofB.surfaces(x, y), samples, 2000 + i, pixel));
+    });
+    tests::blank(compared, image);
+    result.add(image);
   }
+  return result;
 }
 
-TEST(EnvironmentRestir, IsTheSameMapTessellated) {
-  const core::Planes map = tests::noiseMap(12, 6, 0.02f, 3);
-  const World triangles(tessellated(worldUnder(map, true)), 1), image(worldUnder(map, true), kFrames),
-      turned(worldUnder(tests::turnedMap(map, 1), true), kFrames);
-  const auto truth = tests::reference(triangles, 32, 512, hitsOf(image));
-  tests::Hooks hooks;
-  hooks.compared = hitsOf(image);
-  const auto same = tests::compare(tests::estimate(image, wide(), 768, hooks), truth);
-  const auto other = tests::compare(tests::estimate(turned, wide(), 768, hooks), truth);
+const core::Planes& blocks() {
+  static const core::Planes map = tests::noiseMap(12, 6, 0.02f, 3);
+  return map;
+}
+
+/// An image's light is the tessellated map's and nothing else's: all of it, and of every pixel. detects: the relative
+/// bias of all of it that is noticed half of the time.
+void expectTessellated(const char* name, const tests::Estimate& image, const tests::Estimate& turned,
+                       const tests::Estimate& triangles, double detects) {
+  const auto same = tests::compare(image, triangles), other = tests::compare(turned, triangles);
   const double worst = core::sidakBound(tests::kPixels, 1e-6);
-  std::printf("restir: ratio %.5f, z %.2f, worst pixel %.2f of %.2f, detects %.4f; turned: worst pixel %.1f\n",
+  std::printf("%-16s ratio %.5f, z %.2f, worst pixel %.2f of %.2f, detects %.4f; turned: worst pixel %.1f\n", name,
               same.ratio, same.z, same.worst, worst, same.detectable, other.worst);
   EXPECT_LT(std::abs(same.z), kLargestZ);
   EXPECT_LT(same.worst, worst);
-  EXPECT_LT(same.detectable, 0.02);
-  EXPECT_GT(other.worst, worst);  // control
+  EXPECT_LT(same.detectable, detects);
+  EXPECT_GT(other.worst, worst);  // control: one texel to the side
+}
+
+TEST(EnvironmentDirect, IsTheSameMapTessellated) {
+  const World triangles(tessellated(worldUnder(blocks(), false)), 1), image(worldUnder(blocks(), false), 1),
+      turned(worldUnder(tests::turnedMap(blocks(), 1), false), 1);
+  const auto compared = hitsOf(image);
+  expectTessellated("direct", tests::reference(image, 32, 256, compared), tests::reference(turned, 32, 256, compared),
+                    tests::reference(triangles, 32, 256, compared), 0.005);
+}
+
+TEST(EnvironmentRestir, IsTheSameMapTessellatedBesideLamps) {
+  core::Scene lampsAlone = worldUnder(blocks(), true);
+  lampsAlone.environment = nullptr;
+  const World triangles(tessellated(worldUnder(blocks(), false)), 1), lamps(std::move(lampsAlone), 1),
+      image(worldUnder(blocks(), true), kFrames), turned(worldUnder(tests::turnedMap(blocks(), 1), true), kFrames);
+  tests::Hooks hooks;
+  hooks.compared = hitsOf(image);
+  expectTessellated("ReSTIR", tests::estimate(image, wide(), 768, hooks), tests::estimate(turned, wide(), 768, hooks),
+                    referenceOfSum(triangles, lamps, 32, 256, hooks.compared), 0.02);
 }
 
 /// The frame's light by many sequences over that of light sampling, by a test that notices a bias of 2 %.
@@ -194,6 +211,14 @@ void expectUnbiased(const char* name, const World& world, const RestirParameters
   EXPECT_LT(c.detectable, 0.02) << name;
 }
 
+/// A roof with two steep sides: what one side sees of the sky, the other does not.
+core::Scene roofUnder(const core::Planes& map) {
+  core::Scene scene = worldUnder(map, false);
+  tests::addQuad(scene, tests::matte(), {0.6f, 0, 1.5f}, {0.6f, 1.2f, 0}, {0, 0, -3});
+  tests::addQuad(scene, tests::matte(), {1.8f, 0, -1.5f}, {-0.6f, 1.2f, 0}, {0, 0, 3});
+  return scene;
+}
+
 core::Planes sky() { return tests::skyMap(64, 32, 40, 8, 500); }
 
 TEST(EnvironmentRestir, EveryBalancedReuseIsUnbiased) {
@@ -206,7 +231,7 @@ TEST(EnvironmentRestir, EveryBalancedReuseIsUnbiased) {
 }
 
 TEST(EnvironmentRestir, OtherUnbiasedWeightsAreUnbiasedAndConstantOnesAreCaught) {
-  const World world(worldUnder(sky(), false), kFrames);
+  const World world(roofUnder(sky()), kFrames);
   expectUnbiased("balance, no lamps", world, wide());
   expectUnbiased("balance, visibility", world, wide(Mis::balance, true));
   expectUnbiased("pairwise", world, wide(Mis::pairwise));
@@ -224,7 +249,7 @@ TEST(EnvironmentRestir, MovingCamerasAndOccludersLeaveItUnbiased) {
 }
 
 TEST(EnvironmentRestir, CandidatesOfOneKindAloneAreUnbiasedToo) {
-  const World world(worldUnder(tests::noiseMap(12, 6, 0.02f, 3), false), kFrames);
+  const World world(worldUnder(blocks(), false), kFrames);
   for (const auto& [light, bsdf] : {std::pair(4, 0), std::pair(0, 4)}) {
     RestirParameters p = wide();
     p.candidates.lightSamples = light, p.candidates.bsdfSamples = bsdf;
