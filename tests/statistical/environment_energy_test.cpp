@@ -2,6 +2,7 @@
 // interval over seeds. A filter that clamps fireflies must fail.
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <vector>
 
 #include "core/statistics.h"
