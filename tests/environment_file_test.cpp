@@ -126,12 +126,15 @@ TEST_F(EnvironmentFile, BytesThatAreWrongNeverCrash) {
   core::Rng rng(3, core::Pass::lab, 0, 0);
   for (const HdrCoding coding : {HdrCoding::oldRuns, HdrCoding::newRuns}) {
     const std::string bytes = tests::hdrBytes(picture.pixels, 40, coding, picture.size());
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 1000; ++i) {
       std::string spoiled = bytes;
       for (int k = 0; k < 3; ++k)
         spoiled[rng.below(static_cast<std::uint32_t>(bytes.size()))] = static_cast<char>(rng.below(256));
-      const std::string error = errorOf(write("spoiled.hdr", spoiled));
-      ASSERT_EQ(error.find('\n'), std::string::npos) << error;
+      try {
+        core::readHdr(write("spoiled.hdr", spoiled));
+      } catch (const core::Error& e) {
+        ASSERT_EQ(std::string(e.what()).find('\n'), std::string::npos) << e.what();
+      }
     }
   }
 }
