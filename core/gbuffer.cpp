@@ -1,5 +1,6 @@
 #include "core/gbuffer.h"
 
+#include "core/environment.h"
 #include "core/texture.h"
 
 namespace core {
@@ -124,9 +125,10 @@ void writeMotion(const View& view, const InstanceState& state, const vec3& objec
   out.depthChange(x, y) = visible ? pastDepth - depth : 0;
 }
 
-void writeMiss(int x, int y, GBuffer& out) {
+void writeMiss(const View& view, const vec3& direction, int x, int y, GBuffer& out) {
+  const Environment* environment = view.scene.environment.get();
   out.surfaces(x, y) = Surface{};
-  out.emission.view().store(x, y, vec3(0));
+  out.emission.view().store(x, y, environment ? environment->radiance(Environment::uvOf(direction)) : vec3(0));
   out.guide.depth(x, y) = kInfinity;
   out.guide.depthSlope(x, y) = out.guide.depthChange(x, y) = 0;
   out.guide.normal.view().store(x, y, vec3(0));
@@ -173,7 +175,7 @@ void traceRow(const View& view, const Tracer& tracer, int x0, int x1, int y, GBu
       if (hits[i].hit())
         writeHit<F>(view, hits[i], directions[i], x + i, y, out);
       else
-        writeMiss(x + i, y, out);
+        writeMiss(view, directions[i], x + i, y, out);
   }
 }
 

@@ -17,7 +17,7 @@ struct GBuffer {
   GBuffer(int width, int height) : surfaces(width, height), guide(width, height), emission(width, height) {}
   Image<Surface> surfaces;
   GuideImages guide;
-  Planes emission;  ///< radiance of the surface itself towards the camera, never filtered
+  Planes emission;  ///< radiance towards the camera of the surface itself, or of the environment; never filtered
 };
 
 /// Where an instance is now and was one frame before.

@@ -18,7 +18,7 @@ class Lattice3 {
     return {shift_[0] + i * kStep[0], shift_[1] + i * kStep[1], shift_[2] + i * kStep[2]};
   }
   /// The same in [0, 1).
-  static float uniform(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+  static float uniform(std::uint32_t bits) { return unitFloat(bits); }
 
  private:
   // 2^32 / g^k for k = 1, 2, 3 with g^4 = g + 1, so g = 1.2207440846057596.

@@ -15,6 +15,12 @@ struct LightDraw {
   float pdf = 0;
 };
 
+/// Uniform bits that a light point is drawn with: 64 for the light, the more significant first, and where on it.
+struct LightBits {
+  std::uint32_t high = 0, low = 0;
+  std::array<std::uint32_t, 2> where{};
+};
+
 /// Lights ready to be drawn from in one way. Only what that way needs is built; `power` builds nothing.
 class LightChoice {
  public:
@@ -23,16 +29,16 @@ class LightChoice {
   LightChoice(const Lights& lights, LightSampler sampler);
 
   /// Draws a point on a light, for a surface whose normal faces the side that reflects; invalid only where no light has
-  /// power. high, low: 32 uniform bits each, the more significant first; uv: where on the light.
-  LightDraw sample(const vec3& position, const vec3& normal, std::uint32_t high, std::uint32_t low, vec2 uv) const;
+  /// power. rng: as for Lights::sampleAt().
+  LightDraw sample(const vec3& position, const vec3& normal, const LightBits& bits, Rng& rng) const;
   /// Density with which sample() gives y.
   float pdf(const LightSample& y, const vec3& position, const vec3& normal) const;
 
   std::size_t bytes() const { return tree_.bytes() + lit_.size() * sizeof(lit_[0]); }
 
  private:
-  LightDraw sampleUniform(std::uint32_t high, std::uint32_t low, vec2 uv) const;
-  LightDraw sampleTree(const vec3& position, const vec3& normal, double u, vec2 uv) const;
+  LightDraw sampleUniform(const LightBits& bits, Rng& rng) const;
+  LightDraw sampleTree(const vec3& position, const vec3& normal, const LightBits& bits, Rng& rng) const;
   void listInfinite();
 
   struct Infinite {

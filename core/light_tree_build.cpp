@@ -21,7 +21,7 @@ LightItem triangleItem(const Lights& lights, std::uint32_t i) {
           box.high,
           isFinite(normal) ? normal : vec3(0, 0, 1),
           isFinite(normal) ? 1.0f : -1.0f,
-          lights.pdf(i) / sides,
+          lights.probability(i) / sides,
           i};
 }
 
@@ -29,13 +29,13 @@ LightItem punctualItem(const Lights& lights, std::uint32_t i) {
   const PunctualState& p = lights.punctual(i);
   const bool spot = p.type == PunctualLight::Type::spot;
   const float directions = spot ? 2 - p.cosInner - p.cosOuter : 4.0f;
-  return {p.position, p.position, p.direction, spot ? p.cosOuter : -1.0f, lights.pdf(i) / directions, i};
+  return {p.position, p.position, p.direction, spot ? p.cosOuter : -1.0f, lights.probability(i) / directions, i};
 }
 
 std::vector<LightItem> itemsOf(const Lights& lights) {
   std::vector<LightItem> items;
   for (std::uint32_t i = 0; i < lights.size(); ++i)
-    if (lights.pdf(i) > 0 && !lights.isInfinite(i))
+    if (lights.probability(i) > 0 && !lights.isInfinite(i))
       items.push_back(lights.isArea(i) ? triangleItem(lights, i) : punctualItem(lights, i));
   return items;
 }

@@ -14,7 +14,7 @@ namespace core {
 namespace {
 
 constexpr std::size_t kGrain = 4096;  // triangles a task
-constexpr float kLeastDirectional = 1.0f / 9, kMostDirectional = 0.5f;
+constexpr float kLeastInfinite = 1.0f / 9, kMostInfinite = 0.5f;
 
 const Material& materialOf(const Scene& scene, const Instance& instance) {
   return scene.materials[scene.meshes[instance.mesh].material];
@@ -43,7 +43,7 @@ std::vector<vec3> textureMeans(const Mesh& mesh, const TextureMean& mean) {
 
 struct Lights::Constants {
   std::vector<std::vector<vec3>> textureMeans;  // per mesh; empty where emission has no texture
-  std::vector<Bounds> bounds;                   // per mesh; empty without directional lights
+  std::vector<Bounds> bounds;                   // per mesh; empty without infinitely distant lights
 
   explicit Constants(const Scene& scene) : textureMeans(scene.meshes.size()) {
     std::vector<std::optional<TextureMean>> means(scene.textures.size());
@@ -55,7 +55,7 @@ struct Lights::Constants {
       textureMeans[m] = core::textureMeans(scene.meshes[m], *mean);
     }
     const auto directional = [](const PunctualLight& l) { return l.type == PunctualLight::Type::directional; };
-    if (std::none_of(scene.punctual.begin(), scene.punctual.end(), directional)) return;
+    if (!scene.environment && std::none_of(scene.punctual.begin(), scene.punctual.end(), directional)) return;
     bounds = meshBounds(scene);
   }
 
@@ -67,13 +67,14 @@ struct Lights::Constants {
   }
 };
 
-Lights::Lights(const Scene& scene, const Pose& pose, const Lights* before) : scene_(&scene) {
+Lights::Lights(const Scene& scene, const Pose& pose, const Lights* before)
+    : scene_(&scene), environment_(scene.environment.get()) {
   const bool same = before && before->scene_ == &scene;
   constants_ = same ? before->constants_ : std::make_shared<const Constants>(scene);
   std::vector<float> power;
   listTriangles(pose, power);
   listPunctual(pose, power);
-  balanceDirectional(pose, power);
+  balanceInfinite(pose, power);
   drawBy(power);
 }
 
@@ -89,7 +90,7 @@ void Lights::listTriangles(const Pose& pose, std::vector<float>& power) {
     features_.textured |= material.emissionTexture >= 0;
   }
   triangles_.resize(count);
-  power.resize(count + scene.punctual.size());
+  power.resize(count + scene.punctual.size() + (scene.environment ? 1 : 0));
   forEachIndex(scene.instances.size(), [&](std::size_t i) {
     if (firstOfInstance_[i] != kNoLight) fillTriangles(i, pose, power);
   });
@@ -121,9 +122,9 @@ void Lights::fillTriangles(std::size_t i, const Pose& pose, std::span<float> pow
       kGrain);
 }
 
-/// Total intensity over pi, the unit of area times radiance; directional lights come in balanceDirectional().
+/// Total intensity over pi, the unit of area times radiance; infinitely distant lights come in balanceInfinite().
 void Lights::listPunctual(const Pose& pose, std::vector<float>& power) {
-  features_.punctual = !scene_->punctual.empty();
+  features_.punctual = !scene_->punctual.empty() || environment_;
   for (std::size_t i = 0; i < scene_->punctual.size(); ++i) {
     const PunctualLight& light = scene_->punctual[i];
     const mat4& toWorld = pose.nodeToWorld[light.node];
@@ -134,22 +135,29 @@ void Lights::listPunctual(const Pose& pose, std::vector<float>& power) {
   }
 }
 
-void Lights::balanceDirectional(const Pose& pose, std::vector<float>& power) const {
+/// What an infinitely distant light sends through a square of side 1, over all directions; negative for other lights.
+float Lights::infinitePower(std::uint32_t light) const {
+  if (isArea(light)) return -1;
+  if (isEnvironment(light)) return static_cast<float>(4 * double{kPi} * environment_->meanLuminance());
+  const PunctualState& punctual = punctual_[light - triangles_.size()];
+  return punctual.type == PunctualLight::Type::directional ? luminance(punctual.intensity) : -1.0f;
+}
+
+void Lights::balanceInfinite(const Pose& pose, std::vector<float>& power) const {
   if (constants_->bounds.empty()) return;
   const float radius2 = constants_->radius2(*scene_, pose);
-  double local = 0, directional = 0;
-  for (std::size_t i = 0; i < power.size(); ++i) {
-    const bool infinite =
-        i >= triangles_.size() && punctual_[i - triangles_.size()].type == PunctualLight::Type::directional;
-    if (infinite) power[i] = radius2 * luminance(punctual_[i - triangles_.size()].intensity);
-    (infinite ? directional : local) += power[i];
+  double local = 0, infinite = 0;
+  for (std::uint32_t i = 0; i < power.size(); ++i) {
+    const float through = infinitePower(i);
+    if (through >= 0) power[i] = radius2 * through;
+    (through >= 0 ? infinite : local) += power[i];
   }
-  if (!(local > 0 && directional > 0)) return;
-  const double share = directional / (local + directional);
-  const double wanted = std::clamp<double>(share, kLeastDirectional, kMostDirectional);
-  const auto scale = static_cast<float>(wanted / (1 - wanted) * local / directional);
-  for (std::size_t i = 0; i < punctual_.size(); ++i)
-    if (punctual_[i].type == PunctualLight::Type::directional) power[triangles_.size() + i] *= scale;
+  if (!(local > 0 && infinite > 0)) return;
+  const double share = infinite / (local + infinite);
+  const double wanted = std::clamp<double>(share, kLeastInfinite, kMostInfinite);
+  const auto scale = static_cast<float>(wanted / (1 - wanted) * local / infinite);
+  for (std::uint32_t i = triangleCount(); i < power.size(); ++i)
+    if (infinitePower(i) >= 0) power[i] *= scale;
 }
 
 void Lights::drawBy(const std::vector<float>& power) {
@@ -164,12 +172,22 @@ void Lights::drawBy(const std::vector<float>& power) {
       [&](std::size_t i) { triangles_[i].probability = table_.probability(static_cast<std::uint32_t>(i)); }, kGrain);
 }
 
-LightSample Lights::sampleAt(std::uint32_t binBits, std::uint32_t keepBits, vec2 uv) const {
+LightSample Lights::sampleAt(std::uint32_t binBits, std::uint32_t keepBits, std::array<std::uint32_t, 2> where,
+                             Rng& rng) const {
   if (table_.empty()) return {};
-  return pointOn(table_.sample(binBits, keepBits), uv);
+  return pointOn(table_.sample(binBits, keepBits), where, rng);
 }
 
-LightSample Lights::pointOn(std::uint32_t light, vec2 uv) const { return {light, toBarycentric(uv)}; }
+LightSample Lights::pointOn(std::uint32_t light, std::array<std::uint32_t, 2> where, Rng& rng) const {
+  if (!isEnvironment(light)) return {light, toBarycentric({unitFloat(where[0]), unitFloat(where[1])})};
+  const std::uint32_t keepColumn = rng.bits();
+  return {light, environment_->sample(where, {keepColumn, rng.bits()})};
+}
+
+Incident Lights::fromOther(const LightSample& s, const vec3& position) const {
+  if (!isEnvironment(s.light)) return fromPunctual(punctual_[s.light - triangles_.size()], position);
+  return {Environment::directionOf(s.uv), kInfinity, environment_->radiance(s.uv), Environment::solidAngle(s.uv)};
+}
 
 Incident Lights::fromPunctual(const PunctualState& light, const vec3& position) const {
   if (light.type == PunctualLight::Type::directional) return {-light.direction, kInfinity, light.intensity, 1};

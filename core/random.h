@@ -28,6 +28,9 @@ inline std::uint64_t mixBits(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
+/// Uniform in [0, 1) from 32 uniform bits; the upper 24 count.
+inline float unitFloat(std::uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+
 /// Passes draw from streams of their own; the number is part of the key.
 enum class Pass : std::uint32_t {
   candidates = 1,
@@ -60,7 +63,7 @@ class Rng {
     return block_[next_++];
   }
   /// Uniform in [0, 1), 24 bits.
-  float uniform() { return static_cast<float>(bits() >> 8) * 0x1p-24f; }
+  float uniform() { return unitFloat(bits()); }
   vec2 uniform2() {
     const float x = uniform();
     return {x, uniform()};

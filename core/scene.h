@@ -1,6 +1,7 @@
 // A scene as data: what a glTF file says, without acceleration structures. poseAt() evaluates it at an instant.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,8 @@
 #include "core/maths.h"
 
 namespace core {
+
+class Environment;
 
 /// 8-bit RGBA texels; row 0 is the top (v = 0), as in glTF.
 struct Texture {
@@ -93,8 +96,9 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<PunctualLight> punctual;
   std::vector<SceneCamera> cameras;
-  std::vector<Track> flickers;        ///< emission factors over time (scalar, x)
-  std::vector<std::string> warnings;  ///< what of the file is not supported, one line each
+  std::vector<Track> flickers;                     ///< emission factors over time (scalar, x)
+  std::shared_ptr<const Environment> environment;  ///< light from infinitely far away, or null
+  std::vector<std::string> warnings;               ///< what of the file is not supported, one line each
 };
 
 /// What about a scene can change between frames; decided once, so that nothing is paid for what a scene lacks.

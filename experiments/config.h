@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments/pipeline.h"
+#include "experiments/scene_source.h"
 #include "experiments/settings.h"
 
 namespace experiments {
@@ -62,11 +63,13 @@ struct Config {
   std::string baseline;  ///< what ratios are against; empty = unweighted, or the first variant where there is none
   ReferenceParameters reference;
   OutputParameters output;
+  SceneParameters scene;
 };
 
 template <class V>
 void describe(V& v, Config& p) {
   v("scenes", p.scenes, "built-in names or glTF files");
+  v("scene", p.scene, "what every scene gets beside its own file");
   v("frames", p.frames, "frames a sequence, at 30 a second", 1.0, 1e6);
   v("width", p.width, "pixels", 1.0, 16384.0);
   v("height", p.height, "pixels", 1.0, 16384.0);

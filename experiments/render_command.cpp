@@ -162,7 +162,7 @@ void render(const RenderArguments& a) {
   if (output.has_parent_path() && !std::filesystem::is_directory(output.parent_path()))
     throw core::Error(a.output, "its folder does not exist", "create it, or name another file");
 
-  const core::Scene scene = loadScene(a.scene);
+  const core::Scene scene = loadScene(a.scene, {}, environmentOf(config.scene));
   const Stage stage(scene);
   FrameSource source(stage, config, a);
   Planes image(config.width, config.height);

@@ -65,13 +65,15 @@ class Runner {
 
   /// Files first, so that a broken one ends the run before anything is written.
   void loadFiles() {
+    environment_ = environmentOf(config_.scene);
     for (const std::string& source : config_.scenes)
-      if (!isBuiltin(source)) files_.emplace(source, loadScene(source));
+      if (!isBuiltin(source)) files_.emplace(source, loadScene(source, {}, environment_));
   }
 
   void runScene(const std::string& source) {
     const auto file = files_.find(source);
-    const core::Scene scene = file != files_.end() ? std::move(file->second) : loadScene(source, folder_ / "scenes");
+    const core::Scene scene =
+        file != files_.end() ? std::move(file->second) : loadScene(source, folder_ / "scenes", environment_);
     const std::string label = sceneLabel(source), hash = contentHash(scene);
     for (const auto& warning : scene.warnings) notes_.push_back(label + ": " + warning);
     const Stage stage(scene);
@@ -127,7 +129,8 @@ class Runner {
   Results results_;
   std::vector<Figure> figures_;
   std::vector<std::string> notes_;
-  std::map<std::string, core::Scene> files_;  ///< scenes loaded from files, until they are run
+  std::shared_ptr<const core::Environment> environment_;  ///< of every scene; null = none
+  std::map<std::string, core::Scene> files_;              ///< scenes loaded from files, until they are run
   std::optional<Parts> parts_;
   std::optional<Progress> progress_;
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <string_view>
 
 #include "core/check.h"
 #include "core/glb.h"
@@ -15,8 +16,18 @@ namespace experiments {
 namespace {
 
 /// FNV-1a, 64 bits, from a start of its own.
-std::uint64_t fnv(const std::string& bytes, std::uint64_t hash) {
+std::uint64_t fnv(std::string_view bytes, std::uint64_t hash) {
   for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  return hash;
+}
+
+std::uint64_t sceneHash(const std::string& glb, const core::Environment* environment, std::uint64_t start) {
+  std::uint64_t hash = fnv(glb, start);
+  if (environment) {
+    const auto texels = environment->texels();
+    hash = fnv(std::to_string(environment->width()), hash);
+    hash = fnv({reinterpret_cast<const char*>(texels.data()), texels.size_bytes()}, hash);
+  }
   return core::mixBits(hash);
 }
 
@@ -31,7 +42,18 @@ core::Scene loadBuiltin(const std::string& name, std::filesystem::path folder) {
 
 }  // namespace
 
-core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path& folder) {
+std::shared_ptr<const core::Environment> environmentOf(const SceneParameters& p) {
+  if (p.environment.empty()) return nullptr;
+  auto environment = core::loadEnvironment(p.environment, p.environmentScale);
+  if (environment->negatives() > 0)
+    fmt::print(stderr, "twofold: {}: {} pixels have negative values, which count as 0\n", p.environment,
+               environment->negatives());
+  if (environment->black()) fmt::print(stderr, "twofold: {}: it is black: it gives no light\n", p.environment);
+  return environment;
+}
+
+core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path& folder,
+                      std::shared_ptr<const core::Environment> environment) {
   const bool builtin = isBuiltin(nameOrFile);
   if (!builtin && !std::filesystem::path(nameOrFile).has_extension()) {
     std::string known;
@@ -40,7 +62,8 @@ core::Scene loadScene(const std::string& nameOrFile, const std::filesystem::path
                       "give a .gltf or .glb file, or one of " + known);
   }
   core::Scene scene = builtin ? loadBuiltin(nameOrFile, folder) : core::loadGltf(nameOrFile);
-  const bool lit = !scene.punctual.empty() ||
+  scene.environment = std::move(environment);
+  const bool lit = !scene.punctual.empty() || (scene.environment && !scene.environment->black()) ||
                    std::any_of(scene.instances.begin(), scene.instances.end(), [&](const core::Instance& i) {
                      return scene.materials[scene.meshes[i.mesh].material].emits();
                    });
@@ -55,7 +78,9 @@ std::string sceneLabel(const std::string& nameOrFile) {
 
 std::string contentHash(const core::Scene& scene) {
   const std::string bytes = core::glbBytes(scene);
-  return fmt::format("{:016x}{:016x}", fnv(bytes, 0xcbf29ce484222325ull), fnv(bytes, 0x9e3779b97f4a7c15ull));
+  const core::Environment* environment = scene.environment.get();
+  return fmt::format("{:016x}{:016x}", sceneHash(bytes, environment, 0xcbf29ce484222325ull),
+                     sceneHash(bytes, environment, 0x9e3779b97f4a7c15ull));
 }
 
 }  // namespace experiments

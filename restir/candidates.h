@@ -4,8 +4,9 @@
 // those that something hides from this pixel: a neighbour or the next frame may see them. Light sampling draws hidden
 // points. A BSDF ray that stopped at its first hit would not, yet the balance heuristic would still count its density
 // there, and the energy of hidden points would be lost on reuse. So a BSDF sample passes through occluders: its ray is
-// followed through the emitters alone, and every one on it is a candidate of that one sample. Then the density of
-// light point y is exactly pdf(direction) x (area cos_light / d^2), hidden or not. With n batches of L light and B BSDF
+// followed through the emitters alone, and every one on it is a candidate of that one sample; so is the environment at
+// its end. Then the density of light point y is exactly pdf(direction) x (area cos_light / d^2, or d omega / d(u, v)),
+// hidden or not. With n batches of L light and B BSDF
 // samples, the balance heuristic gives every candidate the weight
 //   [candidates 1]  w = p-hat(y) / (n (L p_light(y) + B p_bsdf(y)))
 #pragma once
@@ -65,12 +66,10 @@ class Candidates {
     const Lights& lights = target_.lights();
     if (lights.empty()) return;
     addLightSamples(rng, builder);
-    if (lights.triangleCount() == 0) return;
+    if (!lights.anyHittable()) return;
     for (int i = 0; i < parameters_.bsdfSamples; ++i) {
       const core::BsdfSample s = target_.bsdf().sample(rng.uniform3());
-      if (s.pdf > 0)
-        Walk()(tracer_, lights, origin_, s.direction,
-               [&](const LightSample& y) { add(y, target_.incident(y), lights.pdf(y.light), rng, builder); });
+      if (s.pdf > 0) follow(s.direction, rng, builder);
     }
   }
 
@@ -80,12 +79,21 @@ class Candidates {
     for (int i = 0; i < parameters_.lightSamples; ++i) {
       if (tile_.empty()) {
         const LightSample y = lights.sample(rng);
-        add(y, target_.incident(y), lights.pdf(y.light), rng, builder);
+        add(y, target_.incident(y), lights.pdf(y), rng, builder);
       } else {
         const core::PresampledLight& y = tile_[rng.below(LightTiles::kTileSize)];
         add(y.sample, target_.incident(y), y.probability, rng, builder);
       }
     }
+  }
+
+  /// What a BSDF ray finds: triangles, and behind them all the environment.
+  void follow(const vec3& direction, core::Rng& rng, ReservoirBuilder& builder) const {
+    const Lights& lights = target_.lights();
+    const auto found = [&](const LightSample& y) { add(y, target_.incident(y), lights.pdf(y), rng, builder); };
+    if (lights.triangleCount() > 0) Walk()(tracer_, lights, origin_, direction, found);
+    if constexpr (F.punctual)
+      if (const LightSample y = lights.environmentAt(direction); y.valid()) found(y);
   }
 
   /// lightPdf: density with which light samples give y.
@@ -94,7 +102,7 @@ class Candidates {
     if (!(core::maxComponent(flux) > 0)) return;
     const BsdfValue bsdf = target_.bsdf().value(in.direction);
     const float target = core::luminance(bsdf.f * flux);
-    const double bsdfPdf = target_.lights().isArea(y.light) ? double{bsdf.pdf} * in.geometry : 0.0;
+    const double bsdfPdf = target_.lights().isHittable(y.light) ? double{bsdf.pdf} * in.geometry : 0.0;
     const double density = parameters_.lightSamples * double{lightPdf} + parameters_.bsdfSamples * bsdfPdf;
     builder.add(y, target, target / (total_ * density), rng);  // [candidates 1]
   }

@@ -34,14 +34,15 @@ vec3 weighted(const Receiver& r, const LightSample& y, const Incident& in, Light
   const vec3 flux = in.flux();
   if (!(core::maxComponent(flux) > 0)) return vec3(0);
   const core::BsdfValue bsdf = r.bsdf.value(in.direction);
-  const float bsdfPdf = r.lights.isArea(y.light) ? bsdf.pdf * in.geometry : 0.0f;
+  const float bsdfPdf = r.lights.isHittable(y.light) ? bsdf.pdf * in.geometry : 0.0f;
   return bsdf.f * flux / (lightPdf() + bsdfPdf);  // [Veach 97, 9.2.2] balance heuristic, one sample each
 }
 
 template <LightFeatures F>
-vec3 lightSample(const Receiver& r, const std::array<std::uint32_t, 3>& u, std::uint32_t lowBits) {
-  const vec2 uv(Lattice3::uniform(u[1]), Lattice3::uniform(u[2]));
-  const core::LightDraw drawn = r.choice.sample(r.surface.position, r.surface.normal, u[0], lowBits, uv);
+vec3 lightSample(const Receiver& r, const std::array<std::uint32_t, 3>& u, Rng& rng) {
+  const std::uint32_t lowBits = rng.bits();
+  const core::LightDraw drawn =
+      r.choice.sample(r.surface.position, r.surface.normal, {u[0], lowBits, {u[1], u[2]}}, rng);
   const Incident in = r.lights.template incident<F>(drawn.sample, r.surface.position);
   const vec3 value = weighted(r, drawn.sample, in, [&] { return drawn.pdf; });
   return core::maxComponent(value) > 0 && visible(r.tracer, r.surface, in) ? value : vec3(0);
@@ -52,9 +53,9 @@ vec3 bsdfSample(const Receiver& r, const std::array<std::uint32_t, 3>& u) {
   const core::BsdfSample s = r.bsdf.sample({Lattice3::uniform(u[0]), Lattice3::uniform(u[1]), Lattice3::uniform(u[2])});
   if (!(s.pdf > 0)) return vec3(0);
   const core::Hit hit = r.tracer.intersect(r.origin, s.direction);
-  const std::uint32_t light = hit.hit() ? r.lights.lightOf(hit.instance, hit.primitive) : core::kNoLight;
-  if (light == core::kNoLight) return vec3(0);
-  const LightSample y{light, hit.barycentric};
+  const LightSample y = hit.hit() ? LightSample{r.lights.lightOf(hit.instance, hit.primitive), hit.barycentric}
+                                  : r.lights.environmentAt(s.direction);
+  if (!y.valid()) return vec3(0);
   return weighted(r, y, r.lights.template incident<F>(y, r.surface.position),
                   [&] { return r.choice.pdf(y, r.surface.position, r.surface.normal); });
 }
@@ -64,8 +65,8 @@ vec3 mean(const Receiver& r, int samples, Rng& rng) {
   const Lattice3 lightPoints(rng), bsdfPoints(rng);
   vec3 sum(0);
   for (int i = 0; i < samples; ++i) {
-    sum += lightSample<F>(r, lightPoints.bits(static_cast<std::uint32_t>(i)), rng.bits());
-    if (r.lights.triangleCount() > 0) sum += bsdfSample<F>(r, bsdfPoints.bits(static_cast<std::uint32_t>(i)));
+    sum += lightSample<F>(r, lightPoints.bits(static_cast<std::uint32_t>(i)), rng);
+    if (r.lights.anyHittable()) sum += bsdfSample<F>(r, bsdfPoints.bits(static_cast<std::uint32_t>(i)));
   }
   return sum / static_cast<float>(samples);
 }

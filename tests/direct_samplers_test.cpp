@@ -74,11 +74,11 @@ double combined(const core::Moment& now, const core::Surface& s, const LightChoi
   const core::Bsdf bsdf(s, normalize(now.cameraPosition - s.position));
   const auto value = [&](const core::LightSample& y, const core::Incident& in) {
     const core::BsdfValue f = bsdf.value(in.direction);
-    const float bsdfPdf = now.lights->isArea(y.light) ? f.pdf * in.geometry : 0.0f, density = lightPdf(y) + bsdfPdf;
+    const float bsdfPdf = now.lights->isHittable(y.light) ? f.pdf * in.geometry : 0.0f, density = lightPdf(y) + bsdfPdf;
     return density > 0 ? double{core::luminance(f.f * in.flux()) / density} : 0.0;
   };
   double sum = 0;
-  const auto drawn = choice.sample(s.position, s.normal, rng.bits(), rng.bits(), rng.uniform2());
+  const auto drawn = choice.sample(s.position, s.normal, {rng.bits(), rng.bits(), {rng.bits(), rng.bits()}}, rng);
   const auto in = now.lights->incident<kAll>(drawn.sample, s.position);
   if (core::maxComponent(in.flux()) > 0 && restir::visible(*now.tracer, s, in)) sum += value(drawn.sample, in);
   const core::BsdfSample direction = bsdf.sample(rng.uniform3());
@@ -123,7 +123,7 @@ TEST(Baselines, WrongDensitiesOfTheTreeAreCaught) {
   const auto beside = [&](const core::Surface& s, const auto& y) {
     return choice.pdf(y, s.position + vec3(0.3f, 0, 0), s.normal);
   };
-  const auto byPower = [&](const core::Surface&, const auto& y) { return now.lights->pdf(y.light); };
+  const auto byPower = [&](const core::Surface&, const auto& y) { return now.lights->pdf(y); };
   const auto z = [&](auto&& claim) { return tests::compare(estimateBy(world, choice, 4096, claim), truth); };
   EXPECT_LT(std::abs(z(right).z), kLargestZ);
   EXPECT_LT(z(right).worst, core::sidakBound(tests::kPixels, 1e-6));

@@ -37,7 +37,7 @@ TEST(LightTiles, APackedSampleShinesAsItselfBitForBit) {
     EXPECT_EQ(a.direction, b.direction);
     EXPECT_EQ(a.radiance, b.radiance);
     EXPECT_EQ(a.geometry, b.geometry);
-    EXPECT_EQ(lights.pdf(y.light), packed.probability);
+    EXPECT_EQ(lights.pdf(y), packed.probability);
   }
 }
 
@@ -52,7 +52,7 @@ TEST(LightTiles, LightsAreDrawnWithTheirDensity) {
     for (int block = 0; block < 4; ++block)
       for (const auto& y : tiles.of(block * LightTiles::kBlock, 0)) ++counts[y.sample.light], ++total;
   }
-  for (std::uint32_t i = 0; i < lights.size(); ++i) expected[i] = total * lights.pdf(i);
+  for (std::uint32_t i = 0; i < lights.size(); ++i) expected[i] = total * lights.probability(i);
   // Blocks may share a tile, so counts repeat up to four times; a quarter of them are independent.
   for (std::size_t i = 0; i < counts.size(); ++i) counts[i] /= 4, expected[i] /= 4;
   EXPECT_GT(tests::chiSquareP(counts, expected), 1e-6);

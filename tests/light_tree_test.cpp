@@ -140,7 +140,7 @@ double followsPdf(const Lit& lit, const LightChoice& choice, const Place& at, co
   std::vector<double> counts(lit.lights.size()), expected(lit.lights.size());
   for (int i = 0; i < kDraws; ++i) {
     const std::uint32_t high = rng.bits(), low = rng.bits();
-    const core::LightDraw drawn = choice.sample(at.position, at.normal, high, low, rng.uniform2());
+    const core::LightDraw drawn = choice.sample(at.position, at.normal, {high, low, {rng.bits(), rng.bits()}}, rng);
     EXPECT_NEAR(drawn.pdf, choice.pdf(drawn.sample, at.position, at.normal), 1e-5f * drawn.pdf);
     ++counts[drawn.sample.light];
   }
@@ -178,7 +178,7 @@ int missed(const Lit& lit, float extent, const Density& density, std::uint32_t s
   for (int i = 0; i < 300; ++i) {
     const Place at = randomPlace(lit, extent, rng);
     for (std::uint32_t light = 0; light < lit.lights.size(); ++light) {
-      const core::LightSample y = lit.lights.pointOn(light, rng.uniform2());
+      const core::LightSample y = lit.lights.pointOn(light, {rng.bits(), rng.bits()}, rng);
       const core::Incident in = lit.lights.incident<kAll>(y, at.position);
       if (!(core::maxComponent(in.flux()) > 0 && dot(in.direction, at.normal) > 0)) continue;
       ++shining;
@@ -270,7 +270,8 @@ TEST(LightTree, LightsWithoutPowerAreInNoTree) {
   const Lit dark(scene);
   for (const LightSampler sampler : kSamplers) {
     const LightChoice choice(dark.lights, sampler);
-    EXPECT_FALSE(choice.sample(vec3(0), vec3(0, 1, 0), 0, 0, vec2(0)).sample.valid());
+    core::Rng rng = rngOf(6);
+    EXPECT_FALSE(choice.sample(vec3(0), vec3(0, 1, 0), {}, rng).sample.valid());
   }
   EXPECT_TRUE(LightTree(dark.lights).empty());
   EXPECT_TRUE(LightTree(core::Lights()).empty());
@@ -283,7 +284,7 @@ TEST(LightTree, FirstAndLastNumbersDrawLightsThatHaveProbability) {
   for (int i = 0; i < 2000; ++i) {
     const Place at = randomPlace(lit, 1, rng);
     for (const std::uint32_t bits : {0u, 0xffffffffu})
-      EXPECT_GT(choice.sample(at.position, at.normal, bits, bits, vec2(0.5f)).pdf, 0);
+      EXPECT_GT(choice.sample(at.position, at.normal, {bits, bits, {1u << 31, 1u << 31}}, rng).pdf, 0);
   }
 }
 

@@ -62,7 +62,7 @@ TEST(Lights, ProbabilityIsShareOfPower) {
   const std::vector<double> power{0.5 * 2 * 2, 2 * 2, 4.5 * 2, 12, spot};
   const double sum = 2 + 4 + 9 + 12 + spot;
   ASSERT_EQ(lights.size(), 5u);
-  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_NEAR(lights.pdf(i), power[i] / sum, 1e-6);
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_NEAR(lights.probability(i), power[i] / sum, 1e-6);
   EXPECT_TRUE(lights.isArea(2) && !lights.isArea(3));
 }
 
@@ -82,7 +82,7 @@ TEST(Lights, SamplesFollowProbabilityAndAreUniformOnTriangles) {
     ++cells[std::min(int(s.uv.x * kCells), kCells - 1) * kCells + std::min(int(s.uv.y * kCells), kCells - 1)];
   }
   std::vector<double> expected(3), expectedCells(cells.size());
-  for (std::uint32_t i = 0; i < 3; ++i) expected[i] = kDraws * double(lights.pdf(i));
+  for (std::uint32_t i = 0; i < 3; ++i) expected[i] = kDraws * double(lights.probability(i));
   EXPECT_GT(tests::chiSquareP(light, expected), kSignificance);
   for (int x = 0; x < kCells; ++x)
     for (int y = 0; y < kCells; ++y)  // area of the cell inside x + y < 1, over 1/2
@@ -144,7 +144,7 @@ TEST(Lights, LightThatGrowsKeepsItsMeasure) {
     const core::Lights lights(scene, pose);
     const core::Incident in = lights.incident<kAll>({0, vec2(1 / 3.0f)}, vec3(scale / 3, scale / 3, 100));
     EXPECT_NEAR(in.flux().r, 2 * 0.5 * scale * scale / 1e4, 1e-8);
-    EXPECT_EQ(lights.pdf(0), 1);
+    EXPECT_EQ(lights.probability(0), 1);
   }
 }
 
@@ -159,8 +159,8 @@ TEST(Lights, LightsWithoutPowerKeepTheirIndexAndAreNeverDrawn) {
   EXPECT_EQ(lights.lightOf(2, 0), 2u);
   core::Rng rng(1, core::Pass::lab, 0, 0);
   for (int i = 0; i < 1000; ++i) EXPECT_EQ(lights.sample(rng).light, 0u);
-  EXPECT_EQ(lights.pdf(1), 0);
-  EXPECT_EQ(lights.pdf(2), 0);
+  EXPECT_EQ(lights.probability(1), 0);
+  EXPECT_EQ(lights.probability(2), 0);
   EXPECT_EQ(lights.incident<kAll>({1, {0.1f, 0.1f}}, vec3(0, 0, 1)).flux().r, 0);
   pose.materialEmission[0] = 0;
   const core::Lights dark(scene, pose);
@@ -188,9 +188,9 @@ TEST(Lights, TextureMeanIsZeroOnlyWhereTheTriangleIsBlack) {
   scene.meshes[1].uvs = {vec2(0.6f, 0.3f), vec2(0.7f, 0.3f), vec2(0.6f, 0.4f)};  // around the white texel
   scene.meshes[2].uvs = {vec2(0.1f, 0.7f), vec2(0.3f, 0.7f), vec2(0.1f, 0.9f)};  // far from it
   const core::Lights lights(scene, stillPose(scene));
-  EXPECT_GT(lights.pdf(0), 0);
-  EXPECT_GT(lights.pdf(1), lights.pdf(0));
-  EXPECT_EQ(lights.pdf(2), 0);
+  EXPECT_GT(lights.probability(0), 0);
+  EXPECT_GT(lights.probability(1), lights.probability(0));
+  EXPECT_EQ(lights.probability(2), 0);
   EXPECT_TRUE(lights.features().textured);
   const vec2 b((40.5f / 64 - 0.6f) / 0.1f, (20.5f / 64 - 0.3f) / 0.1f);
   EXPECT_NEAR(lights.incident<kAll>({1, b}, vec3(0, 0, 1)).radiance.g, 2, 1e-3);
@@ -205,7 +205,7 @@ TEST(Lights, MeanOfAUniformTextureIsItsColour) {
   scene.materials[0].emissionTexture = 0;
   addPunctual(scene, core::PunctualLight::Type::point, vec3(0.25f));
   const core::Lights lights(scene, stillPose(scene));
-  EXPECT_NEAR(lights.pdf(0), 0.5029 / (0.5029 + 1), 1e-4);
+  EXPECT_NEAR(lights.probability(0), 0.5029 / (0.5029 + 1), 1e-4);
 }
 
 TEST(Lights, SpotFallsOffBetweenItsCones) {
@@ -228,7 +228,7 @@ TEST(Lights, DirectionalLightsShareStaysBounded) {
     core::Scene scene = triangles({1, 2});
     addPunctual(scene, core::PunctualLight::Type::directional, vec3(intensity));
     const core::Lights lights(scene, stillPose(scene));
-    EXPECT_NEAR(lights.pdf(2), intensity < 1 ? 1.0 / 9 : 0.5, 1e-5);
+    EXPECT_NEAR(lights.probability(2), intensity < 1 ? 1.0 / 9 : 0.5, 1e-5);
     EXPECT_EQ(lights.incident<kAll>({2}, vec3(5)).direction, vec3(0, 0, 1));
     EXPECT_EQ(lights.incident<kAll>({2}, vec3(5)).flux(), vec3(intensity));
     EXPECT_EQ(lights.incident<kAll>({2}, vec3(5)).distance, core::kInfinity);
