@@ -131,6 +131,26 @@ TEST(Lab, SummarisesEveryVariantInEveryCase) {
   EXPECT_NE(overviewHtml(results).find("<svg"), std::string::npos);
 }
 
+TEST(LabCases, StretchedOnesAreAllOthersAndStayLegal) {
+  const LabConfig plain = labConfigFrom({}, {}, ""), held = labConfigFrom({}, {"stretch=[0.7, 1.4]"}, "");
+  const std::size_t count = plain.cases.size();
+  ASSERT_EQ(held.cases.size(), 2 * count);
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    const Case& c = held.cases[i];
+    EXPECT_EQ(c.name, plain.cases[i % count].name + (i < count ? "-x0.7" : "-x1.4"));
+    EXPECT_NE(c.noise.sigma, plain.cases[i % count].noise.sigma);
+    Case read;  // every number lies within the limits of its setting
+    EXPECT_NO_THROW(experiments::fromJson(experiments::toJson(c), read));
+    EXPECT_EQ(read.signal.period, c.signal.period);
+  }
+  EXPECT_EQ(held.cases[0].pattern.foveation.inside, 6);  // 5.6
+  EXPECT_EQ(held.cases[0].pattern.foveation.outside, 1);
+  EXPECT_TRUE(held.stretch.empty());  // a second reading stretches nothing again
+  const LabConfig some = labConfigFrom({}, {"stretch=[1.4]"}, "held-spot");
+  ASSERT_EQ(some.cases.size(), 1u);
+  EXPECT_NEAR(some.cases[0].noise.held, 1 - 0.1f / 1.4f, 1e-6f);  // 14 frames instead of 10
+}
+
 TEST(Lab, RefusesWhatItCannotRun) {
   const auto refused = [](const std::vector<std::string>& changes, const char* only = "") {
     EXPECT_THROW(labConfigFrom({}, changes, only), core::UsageError);
@@ -140,6 +160,8 @@ TEST(Lab, RefusesWhatItCannotRun) {
   refused({"first=96"});
   refused({"variants=[\"nobody\"]"});
   refused({"cases.0.noise.sigma=-1"});
+  refused({"stretch=[0]"});
+  refused({"stretch=[2, 2]"});
 }
 
 }  // namespace

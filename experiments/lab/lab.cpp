@@ -10,6 +10,7 @@
 #include "experiments/config.h"
 #include "experiments/lab/measure.h"
 #include "experiments/lab/overview.h"
+#include "experiments/lab/stretched.h"
 #include "experiments/progress.h"
 #include "experiments/report.h"
 
@@ -100,6 +101,8 @@ LabConfig labConfigFrom(Json json, const std::vector<std::string>& assignments, 
   applyAssignments(json, assignments);
   LabConfig config;
   fromJson(json, config);
+  config.cases = stretched(config.cases, config.stretch);
+  config.stretch.clear();  // what is written down with the results runs as it is
   std::erase_if(config.cases, [&](const Case& c) { return c.name.find(only) == std::string::npos; });
   requireConsistent(config);
   config.baseline = baselineOf(variantConfig(config));

@@ -21,6 +21,7 @@ struct LabConfig {
   svgf::FilterParameters filter;  ///< of cases with a filter
   std::vector<Json> variants = defaultVariants();
   std::vector<Case> cases = defaultCases();
+  std::vector<double> stretch;  ///< factors; see stretched.h. Applied once, when a configuration is read
   std::string baseline = "unweighted";
 };
 
@@ -34,11 +35,12 @@ void describe(V& v, LabConfig& p) {
   v("filter", p.filter, "the spatial filter, in cases that have one");
   v("variants", p.variants, "names, or objects {like, name, histories, blend}");
   v("cases", p.cases, "signal, noise, motion and samples of each");
+  v("stretch", p.stretch, "runs the cases once a factor, all their numbers times it; empty = as they are", 0.1, 10.0);
   v("baseline", p.baseline, "the variant that ratios are against");
 }
 
-/// Reads a configuration, applies assignments "path=value", and keeps the cases whose name contains `only`. Throws
-/// core::UsageError.
+/// Reads a configuration, applies assignments "path=value", stretches the cases, and keeps those whose name contains
+/// `only`. Throws core::UsageError.
 LabConfig labConfigFrom(Json json, const std::vector<std::string>& assignments, const std::string& only);
 
 /// Runs every case, seed and variant: a row each of "MSE" in every region, and of "border_step" at the fovea's border
