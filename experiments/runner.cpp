@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -84,7 +85,14 @@ class Runner {
     const Stage stage(scene);
     References references(stage, config_, hash);
     renderReferences(label, references);
-    for (const std::uint64_t seed : config_.seeds) add(label, sequence(stage, label, hash, seed, references));
+    std::vector<BorderContrasts> borders;
+    for (const std::uint64_t seed : config_.seeds) {
+      SequenceResult result = sequence(stage, label, hash, seed, references);
+      borders.insert(borders.end(), result.borders.begin(), result.borders.end());
+      add(label, std::move(result));
+    }
+    for (Row& row : systematicRows(label, borders))
+      if (std::isfinite(row.value)) results_.rows.push_back(std::move(row));
     std::vector<std::string> names;
     for (const Variant& v : variants_) names.push_back(v.name);
     for (Figure& figure : gallery_.figures(label, names)) figures_.push_back(std::move(figure));
@@ -133,11 +141,18 @@ class Runner {
     part.series = result.series;
     part.passes = result.passes;
     part.config["badPixels"] = result.badPixels;
+    part.config["borders"] = Json::array();
+    for (const BorderContrasts& b : result.borders)
+      part.config["borders"].push_back(
+          {{"variant", b.variant}, {"region", b.region}, {"seed", b.seed}, {"contrasts", b.contrasts}});
     core::writeFileAtomically(file, resultsJson(part).dump());
   }
   static SequenceResult readPart(const fs::path& file) {
     Results part = loadResults(file);
-    return {std::move(part.rows), std::move(part.series), std::move(part.passes),
+    std::vector<BorderContrasts> borders;
+    for (const Json& b : part.config.value("borders", Json::array()))
+      borders.push_back({b.at("variant"), b.at("region"), b.at("seed"), b.at("contrasts")});
+    return {std::move(part.rows), std::move(part.series), std::move(borders), std::move(part.passes),
             part.config.value("badPixels", std::int64_t{0})};
   }
 
