@@ -17,11 +17,12 @@ class Half {
 
   Half() = default;
   Half(float x) {
-    const float magnitude = std::min(std::abs(x), kMost) * 0x1p-112f;  // exponents as wide as a half's
+    const float magnitude = std::min(std::abs(x), kMost);
     const auto u = std::bit_cast<std::uint32_t>(magnitude);
-    const std::uint32_t rounded = u + 0xfffu + (u >> 13 & 1u);  // to nearest, ties to even
+    const std::uint32_t normal = (u - (112u << 23) + 0xfffu + (u >> 13 & 1u)) >> 13;  // to nearest, ties to even
+    const std::uint32_t tiny = std::bit_cast<std::uint32_t>(magnitude + 0.5f) - std::bit_cast<std::uint32_t>(0.5f);
     const std::uint32_t sign = std::bit_cast<std::uint32_t>(x) >> 16 & 0x8000u;
-    bits_ = static_cast<std::uint16_t>(x != x ? kNaN : (rounded >> 13 | sign));
+    bits_ = static_cast<std::uint16_t>(x != x ? kNaN : ((magnitude < 0x1p-14f ? tiny : normal) | sign));
   }
   [[gnu::always_inline]] operator float() const {
     const std::uint32_t magnitude = static_cast<std::uint32_t>(bits_ & 0x7fff) << 13;

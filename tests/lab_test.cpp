@@ -174,7 +174,8 @@ TEST(Lab, SummarisesEveryVariantInEveryCase) {
 }
 
 TEST(LabCases, StretchedOnesAreAllOthersAndStayLegal) {
-  const LabConfig plain = labConfigFrom({}, {}, ""), held = labConfigFrom({}, {"stretch=[0.7, 1.4]"}, "");
+  const LabConfig plain = labConfigFrom(experiments::Json::object(), {}, ""),
+                  held = labConfigFrom({}, {"stretch=[0.7, 1.4]"}, "");
   const std::size_t count = plain.cases.size();
   ASSERT_EQ(held.cases.size(), 2 * count);
   for (std::size_t i = 0; i < 2 * count; ++i) {
