@@ -69,42 +69,76 @@ class Image {
   std::vector<T> pixels_;
 };
 
-/// A colour image as three planes of T (a type that converts to and from float), for kernels that stream rows.
+/// Channels of a colour that one T holds: 1 (T converts to and from float) or 3 (to and from vec3).
+template <class T>
+inline constexpr int kChannels = 1;
+/// Channel c of what one element holds.
+template <class T>
+[[gnu::always_inline]] inline float channelOf(const T& element, [[maybe_unused]] int c) {
+  if constexpr (kChannels<T> == 1)
+    return element;
+  else
+    return static_cast<vec3>(element)[c];
+}
+template <class T>
+inline constexpr int kPlanes = 3 / kChannels<std::remove_const_t<T>>;
+
+/// A colour image as three planes of T, or as one where a T is a whole colour, for kernels that stream rows.
 /// Const-ness as for ImageView.
 template <class T>
 struct PlanesView {
-  std::array<ImageView<T>, 3> plane;
+  std::array<ImageView<T>, kPlanes<T>> plane;
 
   int width() const { return plane[0].width; }
   int height() const { return plane[0].height; }
   bool empty() const { return plane[0].empty(); }
-  vec3 load(int x, int y) const { return {plane[0](x, y), plane[1](x, y), plane[2](x, y)}; }
-  vec3 at(std::ptrdiff_t i) const { return {plane[0].data[i], plane[1].data[i], plane[2].data[i]}; }
-  void store(int x, int y, const vec3& v) const requires(!std::is_const_v<T>) {
-    for (int c = 0; c < 3; ++c) plane[c](x, y) = v[c];
+  vec3 load(int x, int y) const { return at(y * plane[0].pitch + x); }
+  vec3 at(std::ptrdiff_t i) const {
+    if constexpr (kPlanes<T> == 1)
+      return plane[0].data[i];
+    else
+      return {plane[0].data[i], plane[1].data[i], plane[2].data[i]};
   }
-  operator PlanesView<const T>() const requires(!std::is_const_v<T>) { return {{plane[0], plane[1], plane[2]}}; }
+  void store(int x, int y, const vec3& v) const requires(!std::is_const_v<T>) {
+    if constexpr (kPlanes<T> == 1)
+      plane[0](x, y) = v;
+    else
+      for (int c = 0; c < 3; ++c) plane[c](x, y) = v[c];
+  }
+  operator PlanesView<const T>() const requires(!std::is_const_v<T>) {
+    PlanesView<const T> view;
+    for (int p = 0; p < kPlanes<T>; ++p) view.plane[p] = plane[p];
+    return view;
+  }
 };
 
-/// Owner of three planes of one size.
+/// Owner of the planes of a colour image, all of one size.
 template <class T>
 class PlanesOf {
  public:
   PlanesOf() = default;
-  PlanesOf(int width, int height, T value = 0) {
+  PlanesOf(int width, int height, T value = T(0)) {
     for (auto& p : planes_) p = Image<T>(width, height, value);
   }
   int width() const { return planes_[0].width(); }
   int height() const { return planes_[0].height(); }
   bool empty() const { return planes_[0].empty(); }
-  std::size_t bytes() const { return 3 * planes_[0].bytes(); }
-  PlanesView<T> view() { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
-  PlanesView<const T> view() const { return {{planes_[0].view(), planes_[1].view(), planes_[2].view()}}; }
+  std::size_t bytes() const { return kPlanes<T> * planes_[0].bytes(); }
+  PlanesView<T> view() {
+    PlanesView<T> view;
+    for (int p = 0; p < kPlanes<T>; ++p) view.plane[p] = planes_[p].view();
+    return view;
+  }
+  PlanesView<const T> view() const {
+    PlanesView<const T> view;
+    for (int p = 0; p < kPlanes<T>; ++p) view.plane[p] = planes_[p].view();
+    return view;
+  }
   operator PlanesView<T>() { return view(); }
   operator PlanesView<const T>() const { return view(); }
 
  private:
-  std::array<Image<T>, 3> planes_;
+  std::array<Image<T>, kPlanes<T>> planes_;
 };
 
 using Planes = PlanesOf<float>;

@@ -32,7 +32,8 @@ LightDraw LightChoice::sample(const vec3& position, const vec3& normal, const Li
 
 LightDraw LightChoice::sampleUniform(const LightBits& bits, Rng& rng) const {
   const std::uint64_t count = lit_.size();
-  const std::uint64_t index = (bits.high * count + ((bits.low * count) >> 32)) >> 32;  // all 64 bits times count, over 2^64
+  const std::uint64_t index =
+      (bits.high * count + ((bits.low * count) >> 32)) >> 32;  // all 64 bits times count, over 2^64
   const LightSample y = lights_->pointOn(lit_[index], bits.where, rng);
   return {y, lights_->pdfWithin(y) / static_cast<float>(count)};
 }

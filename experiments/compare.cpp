@@ -33,6 +33,10 @@ std::string metricMeaning(const std::string& name) {
       {"bias", "mean of y - r. 0 is right"},
       {"border_step",
        "squared step of the mean error across the border of the region: what an eye sees of it. Lower is better"},
+      {"border_noise", "noise outside over noise inside, next to the border of the region"},
+      {"border_contrast2",
+       "squared Weber contrast of the step that the mean image has across the border of the region, from all seeds "
+       "together; visible from about 1e-4 (1 %). Lower is better"},
       {"max_error", "largest |y - r| of any channel. Lower is better"}};
   const auto found = meanings.find(name);
   return found == meanings.end() ? "" : found->second;

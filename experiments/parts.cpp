@@ -33,7 +33,10 @@ std::optional<SequenceResult> Parts::read(const std::string& scene, const std::s
   const fs::path file = fileOf(scene, sceneHash, seed);
   if (!fs::exists(file)) return {};
   Results part = loadResults(file);
-  return SequenceResult{std::move(part.rows), std::move(part.series), std::move(part.passes),
+  std::vector<BorderContrasts> borders;
+  for (const Json& b : part.config.value("borders", Json::array()))
+    borders.push_back({b.at("variant"), b.at("region"), b.at("seed"), b.at("contrasts")});
+  return SequenceResult{std::move(part.rows), std::move(part.series), std::move(borders), std::move(part.passes),
                         part.config.value("badPixels", std::int64_t{0})};
 }
 
@@ -44,6 +47,10 @@ void Parts::write(const SequenceResult& result, const std::string& scene, const 
   part.series = result.series;
   part.passes = result.passes;
   part.config["badPixels"] = result.badPixels;
+  part.config["borders"] = Json::array();
+  for (const BorderContrasts& b : result.borders)
+    part.config["borders"].push_back(
+        {{"variant", b.variant}, {"region", b.region}, {"seed", b.seed}, {"contrasts", b.contrasts}});
   core::writeFileAtomically(fileOf(scene, sceneHash, seed), resultsJson(part).dump());
 }
 

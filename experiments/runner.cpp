@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 #include <optional>
 
@@ -79,7 +80,14 @@ class Runner {
     const Stage stage(scene);
     References references(stage, config_, hash);
     renderReferences(label, references);
-    for (const std::uint64_t seed : config_.seeds) add(label, sequence(stage, label, hash, seed, references));
+    std::vector<BorderContrasts> borders;
+    for (const std::uint64_t seed : config_.seeds) {
+      SequenceResult result = sequence(stage, label, hash, seed, references);
+      borders.insert(borders.end(), result.borders.begin(), result.borders.end());
+      add(label, std::move(result));
+    }
+    for (Row& row : systematicRows(label, borders))
+      if (std::isfinite(row.value)) results_.rows.push_back(std::move(row));
     std::vector<std::string> names;
     for (const Variant& v : variants_) names.push_back(v.name);
     for (Figure& figure : gallery_.figures(label, names)) figures_.push_back(std::move(figure));

@@ -17,6 +17,10 @@ double luminanceSum(PlanesView<const float> image) {
   });
 }
 
+void fillLuminance(PlanesView<const float> image, core::Image<float>& out) {
+  core::forEachPixel(out.width(), out.height(), [&](int x, int y) { out(x, y) = core::luminance(image.load(x, y)); });
+}
+
 /// Everything that is kept while a sequence runs.
 class Sequence {
  public:
@@ -33,7 +37,10 @@ class Sequence {
         memory_(config.width, config.height),
         image_(config.width, config.height),
         target_(config.width, config.height),
-        energy_(variants.size() + 1) {
+        luminance_(config.width, config.height),
+        halves_{luminance_, luminance_},
+        energy_(variants.size() + 1),
+        borders_(variants.size() + 1) {
     for (const Variant& v : variants) filters_.push_back(std::make_unique<FilterState>(v, config.width, config.height));
   }
 
@@ -58,6 +65,7 @@ class Sequence {
     if (reference) {
       truth.emplace(reference->view());
       demodulate(reference->mean(), shaded, target_);
+      fillLuminance(truth->first(), halves_[0]), fillLuminance(truth->second(), halves_[1]);
     }
     const Reference* compared = truth ? &*truth : nullptr;
 
@@ -84,6 +92,9 @@ class Sequence {
     if (reference) {
       comparison.emplace(image_, *reference, scene_ + ", " + variant + ", frame " + std::to_string(frame));
       for (const Region region : kRegions) addMetrics(frame, variant, region, *comparison);
+      fillLuminance(image_, luminance_);
+      for (std::size_t b = 0; b < kBorders.size(); ++b)
+        borders_[slot][b].add(luminance_, {halves_[0], halves_[1]}, memory_.mask(kBorders[b]));
     }
     if (hooks_.image && isShown(frame))
       hooks_.image({frame, variant, image_, comparison ? &*comparison : nullptr, shading_.gaze()});
@@ -106,6 +117,15 @@ class Sequence {
     for (auto& f : filters_) f->times() = {};
   }
 
+  void addBorders(const std::string& variant, const std::array<BorderStep, kBorders.size()>& borders) {
+    for (std::size_t b = 0; b < kBorders.size(); ++b) {
+      const std::string region(regionName(kBorders[b]));
+      result_.rows.push_back({scene_, variant, seed_, region, "border_step", borders[b].meanSquare()});
+      result_.rows.push_back({scene_, variant, seed_, region, "border_noise", borders[b].noiseRatio()});
+      result_.borders.push_back({variant, region, seed_, borders[b].contrasts()});
+    }
+  }
+
   void addPasses(const std::string& variant, const PassTimes& times) {
     const double frames = std::max(1, config_.frames - 1);
     for (const auto& [pass, ms] : times.sums()) result_.passes.push_back({scene_, variant, pass, ms / frames});
@@ -117,8 +137,10 @@ class Sequence {
 
   void finish() {
     addPasses("shared", shading_.times());
+    addBorders(kRaw, borders_[0]);
     for (std::size_t v = 0; v < variants_.size(); ++v) {
       addPasses(variants_[v].name, filters_[v]->times());
+      addBorders(variants_[v].name, borders_[v + 1]);
       result_.rows.push_back(
           {scene_, variants_[v].name, seed_, "full", "energy_over_raw", energy_[v + 1] / energy_[0]});
       if (variants_[v].filter.fireflyClamp > 0)
@@ -142,7 +164,10 @@ class Sequence {
   std::vector<std::unique_ptr<FilterState>> filters_;
   FovealMemory memory_;
   Planes image_, target_;
-  std::vector<double> energy_;  ///< luminance summed over all pixels and frames: raw, then the variants
+  core::Image<float> luminance_;
+  std::array<core::Image<float>, 2> halves_;  ///< luminance of the reference's
+  std::vector<double> energy_;                ///< luminance summed over all pixels and frames: raw, then the variants
+  std::vector<std::array<BorderStep, kBorders.size()>> borders_;  ///< likewise
   SequenceResult result_;
 };
 

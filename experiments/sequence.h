@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "experiments/border.h"
 #include "experiments/config.h"
 #include "experiments/metrics.h"
 #include "experiments/reference.h"
@@ -28,11 +29,12 @@ struct SequenceHooks {
 };
 
 /// What a sequence measured. Series: relMSE, SSIM and energy ratio by frame, variant and region; rows: sums over all
-/// frames that have no per-frame value (energy_over_raw, clamped_energy, bytes_per_pixel). The variant "raw" is the
-/// unfiltered frame.
+/// frames that have no per-frame value (energy_over_raw, clamped_energy, bytes_per_pixel, border_step, border_noise).
+/// The variant "raw" is the unfiltered frame.
 struct SequenceResult {
   std::vector<Row> rows;
   std::vector<FrameValue> series;
+  std::vector<BorderContrasts> borders;
   std::vector<PassTime> passes;  ///< mean milliseconds a frame, the first frame left out (it has no history)
   std::int64_t badPixels = 0;    ///< pixels whose radiance was not finite
 };

@@ -15,6 +15,7 @@ using core::kBlock;
 constexpr int kRadius = kAtrousRadius;
 constexpr float kKernel[kRadius + 1] = {1.0f, 2.0f / 3, 1.0f / 6};  // B3 spline, relative to its centre
 constexpr int kMostDifferences = 6;                                 // three colours of two more histories
+constexpr int kChannels = core::kChannels<core::Stored>;            // of them in one element of Level::differences
 
 /// Variance around a pixel, 3x3 Gaussian over pixels of the same instance, renormalised at borders and edges.
 float smoothVariance(const Guide& guide, In<float> variance, int x, int y) {
@@ -78,17 +79,19 @@ TWOFOLD_CLONES void addKernel(const float* __restrict weight, const float* __res
   for (int i = 0; i < count; ++i) sum[i] += weight[i] * value[i];
 }
 
+/// To the rows of as many sums as one element has channels.
 TWOFOLD_CLONES void addDifferences(const float* __restrict weight, const core::Stored* __restrict value, int count,
                                    float* __restrict sum) {
 #pragma omp simd
-  for (int i = 0; i < count; ++i) sum[i] += weight[i] * static_cast<float>(value[i]);
+  for (int i = 0; i < count; ++i)
+    for (int c = 0; c < kChannels; ++c) sum[c * kBlock + i] += weight[i] * core::channelOf(value[i], c);
 }
 
 void clear(Sums& s, std::size_t differences, int count) {
   std::fill_n(s.weight, count, 0.0f);
   std::fill_n(s.variance, count, 0.0f);
   for (auto& plane : s.plane) std::fill_n(plane, count, 0.0f);
-  for (std::size_t c = 0; c < differences; ++c) std::fill_n(s.difference[c], count, 0.0f);
+  for (std::size_t c = 0; c < differences * kChannels; ++c) std::fill_n(s.difference[c], count, 0.0f);
 }
 
 /// Adds the tap (dx, dy), in pixels, to the sums.
@@ -104,19 +107,28 @@ void addTap(const Level& level, const Guide& guide, const Span& span, int dx, in
   for (int c = 0; c < 3; ++c) addKernel(weight, level.input.plane[c].row(y + dy) + q, count, s.plane[c] + i);
   const int first = std::max(begin, span.d0), last = std::min(end, span.d1);
   if (last <= first) return;
-  for (std::size_t c = 0; c < level.differences.size(); ++c)
-    addDifferences(weight + first - begin, level.differences[c].row(y + dy) + first + dx, last - first,
-                   s.difference[c] + first - x0);
+  for (std::size_t d = 0; d < level.differences.size(); ++d)
+    addDifferences(weight + first - begin, level.differences[d].row(y + dy) + first + dx, last - first,
+                   s.difference[d * kChannels] + first - x0);
+}
+
+/// Mean of the differences whose sums begin at `sum`, one row a channel, at pixel i of the block.
+template <class Stored>
+Stored meanDifference(const float (*sum)[kBlock], float scale, int i) {
+  if constexpr (kChannels == 1)
+    return sum[0][i] * scale;
+  else
+    return core::vec3(sum[0][i], sum[1][i], sum[2][i]) * scale;
 }
 
 void writeDifferences(const Level& level, const Span& span, const Sums& s) {
-  for (std::size_t c = 0; c < level.differences.size(); ++c) {
-    core::Stored* out = level.differencesOut[c].row(span.y);
-    const core::Stored* in = level.differences[c].row(span.y);
+  for (std::size_t d = 0; d < level.differences.size(); ++d) {
+    core::Stored* out = level.differencesOut[d].row(span.y);
+    const core::Stored* in = level.differences[d].row(span.y);
     std::fill(out + span.x0, out + span.d0, core::Stored(0));
     for (int x = span.d0; x < span.d1; ++x) {
       const int i = x - span.x0;
-      out[x] = s.weight[i] > 0 ? core::Stored(s.difference[c][i] * (1 / s.weight[i])) : in[x];
+      out[x] = s.weight[i] > 0 ? meanDifference<core::Stored>(&s.difference[d * kChannels], 1 / s.weight[i], i) : in[x];
     }
     std::fill(out + std::max(span.d0, span.d1), out + span.x1, core::Stored(0));
   }
@@ -137,7 +149,7 @@ void writeBlock(const Level& level, const Span& span, const Sums& s) {
 }  // namespace
 
 void atrous(const Level& level, const Guide& guide) {
-  CHECK_LE(level.differences.size(), static_cast<std::size_t>(kMostDifferences));
+  CHECK_LE(level.differences.size() * kChannels, static_cast<std::size_t>(kMostDifferences));
   CHECK_EQ(level.differences.size(), level.differencesOut.size());
   fillTolerance(level, guide);
   core::forEachRow(guide.height(), [&](int y) {

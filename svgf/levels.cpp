@@ -17,8 +17,8 @@ void keepHistories(FilterState<K>& s) {
   core::forEachPixel(s.variance.width(), s.variance.height(), [&](int x, int y) {
     s.history.base.view().store(x, y, s.accumulated.base.view().load(x, y));
     for (int j = 0; j < K - 1; ++j)
-      for (int c = 0; c < 3; ++c)
-        s.history.difference[j].view().plane[c](x, y) = s.accumulated.difference[j].view().plane[c](x, y);
+      for (int p = 0; p < core::kPlanes<core::Stored>; ++p)
+        s.history.difference[j].view().plane[p](x, y) = s.accumulated.difference[j].view().plane[p](x, y);
     s.filteredVariance(x, y) = s.variance(x, y);
   });
 }

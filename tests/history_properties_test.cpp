@@ -163,6 +163,8 @@ TEST(Blends, DoNotChangeWhenAllCountsGrowFourfold) {
     const Ledger<3> one = ledgerOf<float>(s), four = ledgerOf<float>(s, 4);
     const auto a = twohistory::pairOf(one, 0, 1), b = twohistory::pairOf(four, 0, 1);
     ASSERT_EQ(leastVarianceWeight(a), leastVarianceWeight(b));
+    ASSERT_EQ((twohistory::leastVarianceWeights<3, float>(covarianceOf(one))),
+              (twohistory::leastVarianceWeights<3, float>(covarianceOf(four))));
     ASSERT_EQ(consistentWeight(a, 0.25f), consistentWeight(b, 0.0625f));  // kappa and g are in units of s2
     ASSERT_EQ(lagWeight(a, one.age(0), one.age(1), 0.25f), lagWeight(b, four.age(0), four.age(1), 0.0625f));
     ASSERT_EQ(twohistory::lagWeights(one, 0.25f, -0.5f), twohistory::lagWeights(four, 0.0625f, -0.5f));

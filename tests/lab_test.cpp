@@ -98,12 +98,54 @@ TEST(LabMeasure, BorderStepSeesALevelAndNotNoise) {
       level(x, y) = x < 24 ? 0.5f : 0.2f;
       noise(x, y) = 0.3f * (rng.uniform() < 0.5f ? -1.0f : 1.0f);
     }
-  BorderStep ofLevel, ofNoise, ofNothing;
-  ofLevel.add(level, inside);
-  ofNoise.add(noise, inside);
+  const core::Image<float> zero(kSize, kSize);
+  experiments::BorderStep ofLevel, ofNoise, ofNothing;
+  ofLevel.add(level, {zero, zero}, inside);
+  ofNoise.add(noise, {zero, zero}, inside);
   EXPECT_NEAR(ofLevel.meanSquare(), 0.09, 1e-6);
   EXPECT_LT(ofNoise.meanSquare(), 0.1 * 0.09);
+  EXPECT_NEAR(ofNoise.noiseRatio(), 1, 0.1);
   EXPECT_TRUE(std::isnan(ofNothing.meanSquare()));
+  EXPECT_TRUE(std::isnan(ofNothing.noiseRatio()));
+}
+
+/// Contrasts and noise ratio of a truth of 2 with a step of 0.02 * `step` at x = 24, under independent noise, ten times
+/// as strong outside.
+experiments::BorderStep noisyBorder(std::uint64_t seed, float step) {
+  core::Image<float> image(kSize, kSize), truth(kSize, kSize, 2.0f);
+  core::Image<std::uint8_t> inside(kSize, kSize);
+  experiments::BorderStep border;
+  for (std::uint32_t frame = 0; frame < 32; ++frame) {
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        core::Rng rng(seed, core::Pass::lab, static_cast<std::uint32_t>(y * kSize + x), frame);
+        inside(x, y) = x < 24;
+        image(x, y) = 2 + (x < 24 ? 0.02f * step : 0) + (x < 24 ? 0.1f : 1.0f) * (rng.uniform() - 0.5f);
+      }
+    border.add(image, {truth, truth}, inside);
+  }
+  return border;
+}
+
+TEST(Border, SeedsTogetherSeeAContrastOfOnePercentBelowTheNoiseAndNoneWhereThereIsNone) {
+  for (const float step : {1.0f, 0.0f}) {
+    std::vector<experiments::BorderStep> borders;
+    std::vector<const std::vector<experiments::BorderStep::Contrast>*> contrasts;
+    for (std::uint64_t seed = 1; seed <= 24; ++seed) borders.push_back(noisyBorder(seed, step));
+    for (const auto& b : borders) contrasts.push_back(&b.contrasts());
+    const std::vector<double> values = experiments::systematicContrast2(contrasts);
+    const core::Interval i = core::meanInterval(values, 1 - 1e-6);
+    const double floor = 1.01, truth = 1e-4 * static_cast<double>(step) / (floor * floor);  // 1 % of the level is added
+    EXPECT_LT(i.low, truth);
+    EXPECT_GT(i.high, truth);
+    EXPECT_LT(i.halfWidth(), 7e-5);
+    EXPECT_EQ(i.low > 0, step > 0);
+    EXPECT_NEAR(borders[0].noiseRatio(), 10, 0.3);
+    const double naive = borders[0].meanSquare() / 4;  // control: one seed's squared step is mostly noise
+    EXPECT_GT(naive, 2.0 * std::max(truth, 1e-4));
+  }
+  const std::vector<experiments::BorderStep::Contrast> one(3, {1, 1});
+  for (const double v : experiments::systematicContrast2({&one, &one})) EXPECT_TRUE(std::isnan(v));
 }
 
 LabConfig small() {
@@ -131,6 +173,27 @@ TEST(Lab, SummarisesEveryVariantInEveryCase) {
   EXPECT_NE(overviewHtml(results).find("<svg"), std::string::npos);
 }
 
+TEST(LabCases, StretchedOnesAreAllOthersAndStayLegal) {
+  const LabConfig plain = labConfigFrom(experiments::Json::object(), {}, ""),
+                  held = labConfigFrom({}, {"stretch=[0.7, 1.4]"}, "");
+  const std::size_t count = plain.cases.size();
+  ASSERT_EQ(held.cases.size(), 2 * count);
+  for (std::size_t i = 0; i < 2 * count; ++i) {
+    const Case& c = held.cases[i];
+    EXPECT_EQ(c.name, plain.cases[i % count].name + (i < count ? "-x0.7" : "-x1.4"));
+    EXPECT_NE(c.noise.sigma, plain.cases[i % count].noise.sigma);
+    Case read;  // every number lies within the limits of its setting
+    EXPECT_NO_THROW(experiments::fromJson(experiments::toJson(c), read));
+    EXPECT_EQ(read.signal.period, c.signal.period);
+  }
+  EXPECT_EQ(held.cases[0].pattern.foveation.inside, 6);  // 5.6
+  EXPECT_EQ(held.cases[0].pattern.foveation.outside, 1);
+  EXPECT_TRUE(held.stretch.empty());  // a second reading stretches nothing again
+  const LabConfig some = labConfigFrom({}, {"stretch=[1.4]"}, "held-spot");
+  ASSERT_EQ(some.cases.size(), 1u);
+  EXPECT_NEAR(some.cases[0].noise.held, 1 - 0.1f / 1.4f, 1e-6f);  // 14 frames instead of 10
+}
+
 TEST(Lab, RefusesWhatItCannotRun) {
   const auto refused = [](const std::vector<std::string>& changes, const char* only = "") {
     EXPECT_THROW(labConfigFrom({}, changes, only), core::UsageError);
@@ -140,6 +203,8 @@ TEST(Lab, RefusesWhatItCannotRun) {
   refused({"first=96"});
   refused({"variants=[\"nobody\"]"});
   refused({"cases.0.noise.sigma=-1"});
+  refused({"stretch=[0]"});
+  refused({"stretch=[2, 2]"});
 }
 
 }  // namespace

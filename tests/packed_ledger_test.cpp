@@ -6,12 +6,17 @@
 #include <cmath>
 
 #include "core/bfloat16.h"
+#include "core/half.h"
+#include "core/shared_exponent.h"
 #include "tests/schedule.h"
 #include "tests/synthetic.h"
 
 namespace {
 
 using core::Bfloat16;
+using core::Half;
+using core::SharedExponent;
+using core::vec3;
 using twohistory::ditherOf;
 using twohistory::Forgetting;
 using twohistory::Ledger;
@@ -56,6 +61,67 @@ TEST(Bfloat16, RoundsToNearestAndStaysFinite) {
   EXPECT_TRUE(std::isfinite(Bfloat16(most)));
   EXPECT_TRUE(std::isfinite(Bfloat16(-most)));
   EXPECT_TRUE(std::isnan(Bfloat16(std::bit_cast<float>(0x7f800001u))));
+}
+
+TEST(Half, RoundsToNearestBetweenItsLimitsAndStaysFinite) {
+  for (const float x : {0.0f, -0.0f, 1.0f, -1.5f, 65504.0f, 0x1p-14f, -0x1p-24f}) EXPECT_EQ(Half(x), x);
+  EXPECT_TRUE(std::signbit(float(Half(-0.0f))));
+  core::Rng rng(1, core::Pass::other, 1, 0);
+  for (int i = 0; i < 100'000; ++i) {
+    const float x = std::ldexp(rng.uniform() - 0.5f, static_cast<int>(rng.below(46)) - 29);  // 2^-30 .. 2^15
+    ASSERT_LE(std::abs(Half(x) - x), std::max(std::abs(x) * 0x1p-11f, 0x1p-25f)) << x;
+    ASSERT_EQ(Half(Half(x)), Half(x));
+  }
+  EXPECT_EQ(Half(1 + 0x1p-11f), 1);                                 // ties to even
+  EXPECT_EQ(Half(1 + 0x3p-11f), 1 + 0x1p-9f);                       // upwards
+  EXPECT_EQ(Half(0x1p-26f), 0);                                     // denormals end here
+  EXPECT_EQ(Half(std::numeric_limits<float>::denorm_min()), 0);     // a float's, too
+  for (const float tooLarge : {65520.0f, 1e6f, core::kInfinity}) {  // the range's trouble: radiance goes up to 1e6
+    EXPECT_EQ(Half(tooLarge), 65504);
+    EXPECT_EQ(Half(-tooLarge), -65504);
+  }
+  EXPECT_TRUE(std::isnan(Half(std::numeric_limits<float>::quiet_NaN())));
+}
+
+float largestOf(const vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+TEST(SharedExponent, ErrsByAShareOfTheLargestChannel) {
+  core::Rng rng(1, core::Pass::other, 2, 0);
+  double worst = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    // Signed, channels of unequal size, 2^-100 .. 2^100 (radiance 1e-4 .. 1e6 is 2^-13 .. 2^20).
+    const float scale = std::ldexp(1.0f, static_cast<int>(rng.below(200)) - 100);
+    const vec3 v = scale * (rng.uniform3() - 0.5f) * vec3(1, 1, rng.uniform() < 0.5f ? 1e-3f : 1);
+    const vec3 back = SharedExponent(v);
+    worst = std::max<double>(worst, largestOf(back - v) / largestOf(v));
+    ASSERT_EQ(vec3(SharedExponent(back)), back);  // storing again changes nothing
+  }
+  EXPECT_LE(worst, 0x1p-7);
+  EXPECT_GT(worst, 0x1p-8);  // control: no bit fewer would do
+}
+
+TEST(SharedExponent, KeepsSignsZeroAndTheEndsOfItsRange) {
+  EXPECT_EQ(vec3(SharedExponent(vec3(0))), vec3(0));
+  EXPECT_EQ(vec3(SharedExponent()), vec3(0));
+  for (const float x : {1e-4f, 1.0f, 1e6f, 0x1p-110f, 0x1p120f}) {
+    const vec3 v = SharedExponent(vec3(x, -x, 0));
+    EXPECT_NEAR(v.x / x, 1, 0x1p-7);
+    EXPECT_EQ(v.y, -v.x);
+    EXPECT_EQ(v.z, 0);
+  }
+  EXPECT_EQ(vec3(SharedExponent(vec3(std::numeric_limits<float>::denorm_min()))), vec3(0));
+  EXPECT_EQ(sizeof(SharedExponent), 4u);
+}
+
+TEST(SharedExponent, StaysFiniteUnlessItIsNotANumber) {
+  const float most = std::numeric_limits<float>::max(), nan = std::numeric_limits<float>::quiet_NaN();
+  for (const vec3& v : {vec3(most, -most, 0), vec3(core::kInfinity, 1, -core::kInfinity)}) {
+    const vec3 back = SharedExponent(v);
+    EXPECT_TRUE(core::isFinite(back));
+    EXPECT_GT(largestOf(back), 0.98f * most);
+  }
+  const vec3 bad = SharedExponent(vec3(1, nan, 0));
+  EXPECT_TRUE(std::isnan(bad.x) && std::isnan(bad.y) && std::isnan(bad.z));
 }
 
 /// Runs packed and float ledgers side by side; `dithered` as stored, else always rounded to nearest.
@@ -123,19 +189,38 @@ TEST(PackedLedger, HasNoSpareBytes) {
   EXPECT_EQ(sizeof(PackedLedger<3>), 26u);
 }
 
-TEST(Differences, OfHistoriesDoNotStall) {
-  // A step up: the slow history follows the fast one; their stored difference must vanish with it.
-  float fast = 0;
-  Bfloat16 stored = 0;
+/// What a slow history in `Stored` is after a step up of all channels, kept as its difference from a fast one in float,
+/// or (control) as it is.
+template <class Stored>
+vec3 slowAfterStep(bool asDifference) {
+  const vec3 truth(1, 0.4f, 0.1f);
+  const auto read = [](const Stored& s) {
+    vec3 v(0);
+    for (int c = 0; c < core::kChannels<Stored>; ++c) v[c] = core::channelOf(s, c);
+    return v;
+  };
+  vec3 fast(0);
+  Stored stored(0.0f);
   for (int i = 0; i < 10'000; ++i) {
-    const float slow = fast + stored;
-    fast += 0.2f * (1 - fast);
-    stored = slow + 0.05f * (1 - slow) - fast;
+    const vec3 base = asDifference ? fast : vec3(0), slow = base + read(stored);
+    fast += 0.2f * (truth - fast);
+    const vec3 next = slow + 0.05f * (truth - slow), kept = next - (asDifference ? fast : vec3(0));
+    if constexpr (core::kChannels<Stored> == 3)
+      stored = Stored(kept);
+    else
+      stored = Stored(kept.x);
   }
-  EXPECT_NEAR(fast + stored, 1, 1e-5f);
-  Bfloat16 naive = 0;  // control: the history itself in two bytes
-  for (int i = 0; i < 10'000; ++i) naive = naive + 0.05f * (1 - naive);
-  EXPECT_GT(std::abs(naive - 1), 0.01f);
+  return (asDifference ? fast : vec3(0)) + read(stored);
+}
+
+TEST(Differences, OfHistoriesDoNotStall) {
+  // The slow history follows the fast one; their stored difference must vanish with it.
+  EXPECT_NEAR(slowAfterStep<Bfloat16>(true).x, 1, 1e-5f);
+  EXPECT_NEAR(slowAfterStep<Half>(true).x, 1, 1e-5f);
+  EXPECT_NEAR(slowAfterStep<SharedExponent>(true).x, 1, 1e-5f);
+  EXPECT_GT(std::abs(slowAfterStep<Bfloat16>(false).x - 1), 0.01f);  // control: the history itself in two bytes
+  EXPECT_GT(std::abs(slowAfterStep<Half>(false).x - 1), 2e-3f);
+  EXPECT_GT(std::abs(slowAfterStep<SharedExponent>(false).x - 1), 0.01f);
 }
 
 /// Bytes a pixel that a variant keeps beyond one history, after some frames.

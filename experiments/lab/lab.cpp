@@ -10,6 +10,7 @@
 #include "experiments/config.h"
 #include "experiments/lab/measure.h"
 #include "experiments/lab/overview.h"
+#include "experiments/lab/stretched.h"
 #include "experiments/parts.h"
 #include "experiments/progress.h"
 #include "experiments/report.h"
@@ -35,11 +36,10 @@ class Job {
     }
   }
 
-  std::vector<Row> run() {
+  /// A measure a variant.
+  std::vector<Measure> run() {
     for (int frame = 0; frame < config_.frames; ++frame) runFrame(frame >= config_.first);
-    std::vector<Row> rows;
-    for (std::size_t v = 0; v < variants_.size(); ++v) addRows(variants_[v].name, measures_[v], rows);
-    return rows;
+    return std::move(measures_);
   }
 
  private:
@@ -52,14 +52,6 @@ class Job {
     }
   }
 
-  void addRows(const std::string& variant, const Measure& m, std::vector<Row>& rows) const {
-    for (const Region region : kRegions)
-      rows.push_back({case_.name, variant, seed_, std::string(regionName(region)), "MSE", m.squaredError(region)});
-    for (const Region region : {Region::fovea, Region::recentlyFoveal})
-      rows.push_back(
-          {case_.name, variant, seed_, std::string(regionName(region)), "border_step", m.borderStep(region)});
-  }
-
   const LabConfig& config_;
   const Case& case_;
   std::uint64_t seed_;
@@ -70,6 +62,16 @@ class Job {
   std::vector<Measure> measures_;
   std::vector<std::unique_ptr<FilterState>> states_;
 };
+
+void addRows(const std::string& scene, const std::string& variant, std::uint64_t seed, const Measure& m,
+             std::vector<Row>& rows) {
+  const auto add = [&](Region region, const char* metric, double value) {
+    rows.push_back({scene, variant, seed, std::string(regionName(region)), metric, value});
+  };
+  for (const Region region : kRegions) add(region, "MSE", m.squaredError(region));
+  for (const Region region : kBorders) add(region, "border_step", m.border(region).meanSquare());
+  for (const Region region : kBorders) add(region, "border_noise", m.border(region).noiseRatio());
+}
 
 /// The experiment's configuration as far as variants go.
 Config variantConfig(const LabConfig& lab) {
@@ -101,6 +103,8 @@ LabConfig labConfigFrom(Json json, const std::vector<std::string>& assignments, 
   applyAssignments(json, assignments);
   LabConfig config;
   fromJson(json, config);
+  config.cases = stretched(config.cases, config.stretch);
+  config.stretch.clear();  // what is written down with the results runs as it is
   std::erase_if(config.cases, [&](const Case& c) { return c.name.find(only) == std::string::npos; });
   requireConsistent(config);
   config.baseline = baselineOf(variantConfig(config));
@@ -110,16 +114,27 @@ LabConfig labConfigFrom(Json json, const std::vector<std::string>& assignments, 
 Results runLab(const LabConfig& config) {
   const std::vector<Variant> variants = variantsOf(variantConfig(config));
   const std::size_t seeds = config.seeds.size(), jobs = config.cases.size() * seeds;
-  std::vector<std::vector<Row>> rows(jobs);
+  std::vector<std::vector<Measure>> measures(jobs);
   Progress progress("sequences", static_cast<std::int64_t>(jobs));
   core::forEachIndex(jobs, [&](std::size_t i) {
     const Case& c = config.cases[i / seeds];
     // An inner loop that waits must not begin another sequence meanwhile: stacks and memory would pile up.
-    tbb::this_task_arena::isolate([&] { rows[i] = Job(config, c, config.seeds[i % seeds], variants).run(); });
+    tbb::this_task_arena::isolate([&] { measures[i] = Job(config, c, config.seeds[i % seeds], variants).run(); });
     progress.advance(1, c.name);
   });
   Results results;
-  for (const auto& r : rows) results.rows.insert(results.rows.end(), r.begin(), r.end());
+  for (std::size_t i = 0; i < jobs; ++i)
+    for (std::size_t v = 0; v < variants.size(); ++v)
+      addRows(config.cases[i / seeds].name, variants[v].name, config.seeds[i % seeds], measures[i][v], results.rows);
+  for (std::size_t c = 0; c < config.cases.size(); ++c) {  // what only several seeds together can tell
+    std::vector<BorderContrasts> contrasts;
+    for (std::size_t s = 0; s < seeds; ++s)
+      for (std::size_t v = 0; v < variants.size(); ++v)
+        for (const Region region : kBorders)
+          contrasts.push_back({variants[v].name, std::string(regionName(region)), config.seeds[s],
+                               measures[c * seeds + s][v].border(region).contrasts()});
+    for (Row& r : systematicRows(config.cases[c].name, contrasts)) results.rows.push_back(std::move(r));
+  }
   results.config = toJson(config);
   results.baseline = config.baseline;
   results.provenance = currentProvenance();

@@ -21,6 +21,7 @@ struct LabConfig {
   svgf::FilterParameters filter;  ///< of cases with a filter
   std::vector<Json> variants = defaultVariants();
   std::vector<Case> cases = defaultCases();
+  std::vector<double> stretch;  ///< factors; see stretched.h. Applied once, when a configuration is read
   std::string baseline = "unweighted";
 };
 
@@ -34,15 +35,18 @@ void describe(V& v, LabConfig& p) {
   v("filter", p.filter, "the spatial filter, in cases that have one");
   v("variants", p.variants, "names, or objects {like, name, histories, blend}");
   v("cases", p.cases, "signal, noise, motion and samples of each");
+  v("stretch", p.stretch, "runs the cases once a factor, all their numbers times it; empty = as they are", 0.1, 10.0);
   v("baseline", p.baseline, "the variant that ratios are against");
 }
 
-/// Reads a configuration, applies assignments "path=value", and keeps the cases whose name contains `only`. Throws
-/// core::UsageError.
+/// Reads a configuration, applies assignments "path=value", stretches the cases, and keeps those whose name contains
+/// `only`. Throws core::UsageError.
 LabConfig labConfigFrom(Json json, const std::vector<std::string>& assignments, const std::string& only);
 
-/// Runs every case, seed and variant: a row each of "MSE" in every region, and of "border_step" at the fovea's border
-/// and at that of where it has been. Cases are the results' scenes.
+/// Runs every case, seed and variant: a row each of "MSE" in every region, and at the fovea's border and that of where
+/// it has been (border.h): of "border_step", mean squared step; "border_noise", noise outside over noise inside;
+/// "border_contrast2", squared Weber contrast of the step in the mean image, from three seeds on. Cases are the
+/// results' scenes.
 Results runLab(const LabConfig& config);
 
 /// runLab, and results.json, results.csv, report.html in folder (created if need be).

@@ -1,0 +1,55 @@
+// Every formula of docs/history.md has a tag, every tag stands where code computes it, and no tag of the code is
+// without a formula.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <regex>
+#include <set>
+
+#include "core/files.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Tags = std::set<std::string>;
+
+/// Tags are [family name]; others, such as [SVGF (5)] or [Tu24], name formulas of the literature.
+Tags tagsOf(const std::string& text) {
+  static const std::regex kTag(R"(\[(?:ledger|blend|check|moments|clamp|told)(?: [^\]\n]*)?\])");
+  Tags tags;
+  for (std::sregex_iterator i(text.begin(), text.end(), kTag), end; i != end; ++i) tags.insert(i->str());
+  return tags;
+}
+
+Tags tagsOfCode() {
+  Tags all;
+  for (const char* folder : {"core", "twohistory", "restir", "svgf"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(TWOFOLD_SOURCE_DIR) / folder)) {
+      const std::string extension = entry.path().extension().string();
+      if (extension == ".h" || extension == ".cpp") all.merge(tagsOf(core::readFile(entry.path().string())));
+    }
+  return all;
+}
+
+Tags missingFrom(const Tags& all, const Tags& some) {
+  Tags missing;
+  std::set_difference(some.begin(), some.end(), all.begin(), all.end(), std::inserter(missing, missing.end()));
+  return missing;
+}
+
+const Tags kNone;
+
+TEST(FormulaTags, OfThePageAreInTheCodeAndThoseOfTheCodeOnThePage) {
+  const Tags page = tagsOf(core::readFile(TWOFOLD_SOURCE_DIR "/docs/history.md")), code = tagsOfCode();
+  EXPECT_GT(page.size(), 15u);
+  EXPECT_EQ(missingFrom(code, page), kNone) << "on the page and nowhere in the code";
+  EXPECT_EQ(missingFrom(page, code), kNone) << "in the code and not on the page";
+}
+
+TEST(FormulaTags, ControlATagThatIsMissingIsNoticed) {
+  const Tags tags = tagsOf("a [ledger 1] b [blend lag, two] c [SVGF (5)] d [0, 1] e [told]");
+  EXPECT_EQ(tags, (Tags{"[ledger 1]", "[blend lag, two]", "[told]"}));
+  EXPECT_EQ(missingFrom({"[ledger 1]"}, tags), (Tags{"[blend lag, two]", "[told]"}));
+}
+
+}  // namespace
