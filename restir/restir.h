@@ -60,7 +60,7 @@ enum class SecondBlend { counts, measured, mean };
 struct SecondParameters {
   bool on = false;
   twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 3};
-  SecondBlend blend = SecondBlend::counts;
+  SecondBlend blend = SecondBlend::mean;
 };
 
 struct RestirParameters {

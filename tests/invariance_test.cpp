@@ -118,7 +118,7 @@ double unshadowed(const core::Moment& now, std::uint32_t image, bool converted) 
       const core::Incident in = target.incident(y);
       if (!(core::maxComponent(in.flux()) > 0)) return;
       const double bsdf = double{target.bsdf().value(in.direction).pdf} * (converted ? in.geometry : 1.0f);
-      builder.add(y, target(y), target(y) / (now.lights->pdf(y.light) + bsdf), rng);
+      builder.add(y, target(y), target(y) / (now.lights->pdf(y) + bsdf), rng);
     };
     add(now.lights->sample(rng));
     const core::BsdfSample s = target.bsdf().sample(rng.uniform3());
@@ -148,7 +148,7 @@ TEST(Invariance, DensitiesOfTwoMeasuresMustNotBeMixed) {
       core::Rng rng(1, core::Pass::other, q, i);
       for (int k = 0; k < 8; ++k) {
         const core::LightSample y = now.lights->sample(rng);
-        sum += target(y) / (8.0 * now.lights->pdf(y.light));
+        sum += target(y) / (8.0 * now.lights->pdf(y));
       }
     }
     truth.add(sum);
