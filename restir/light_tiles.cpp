@@ -7,7 +7,7 @@
 namespace restir {
 namespace {
 
-constexpr int kLeastTiles = 8, kMostTiles = 128, kSharing = 8;
+constexpr int kLeastTiles = 8, kMostTiles = 128, kSharing = 32;
 
 bool wanted(TileUse use, const core::Lights& lights) {
   if (use == TileUse::never || lights.empty()) return false;

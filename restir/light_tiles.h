@@ -27,7 +27,7 @@ class LightTiles {
   static constexpr std::uint32_t kManyLights = 1u << 15;
 
   /// Fills the frame's tiles, or none where the lights do not ask for it. candidates: light samples that the image's
-  /// pixels draw with one batch each; a tile serves about eight times its size.
+  /// pixels draw with one batch each; a tile serves about 32 times its size.
   void fill(TileUse use, const core::Lights& lights, core::LightFeatures features, std::int64_t candidates,
             std::uint64_t seed, std::uint32_t frame);
 
