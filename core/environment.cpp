@@ -13,8 +13,6 @@ namespace {
 
 constexpr float kLeastV = 0x1p-24f, kLastBelowOne = 1 - 0x1p-24f;
 
-double luminanceOf(const vec3& c) { return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b; }
-
 /// Weights of largest 1, so that no luminance is too small or too large for a table.
 std::vector<float> normalised(const std::vector<double>& weights) {
   const double largest = *std::max_element(weights.begin(), weights.end());
@@ -62,7 +60,7 @@ void Environment::buildTables() {
   forEachRow(height(), [&](int y) {
     std::vector<double> weights(static_cast<std::size_t>(width()));
     double sum = 0;
-    for (int x = 0; x < width(); ++x) sum += weights[static_cast<std::size_t>(x)] = luminanceOf(texels_(x, y));
+    for (int x = 0; x < width(); ++x) sum += weights[static_cast<std::size_t>(x)] = double{luminance(texels_(x, y))};
     rowWeights[static_cast<std::size_t>(y)] = sum * meanSine(y, height());
     columns_[static_cast<std::size_t>(y)] = AliasTable(normalised(weights));
   });

@@ -68,7 +68,7 @@ struct PresampledLight {
   vec3 point{0}, cross2Area{0};  ///< of the triangle, world space
   vec3 radiance{0};              ///< texture included
   LightSample sample;
-  float probability = 0;    ///< pdf() of the sample
+  float pdf = 0;            ///< Lights::pdf() of the sample
   std::uint32_t flags = 0;  ///< as TriangleLight's
 };
 static_assert(sizeof(PresampledLight) <= 64);
@@ -221,7 +221,7 @@ Incident Lights::incident(const PresampledLight& s, const vec3& position) const 
 
 template <LightFeatures F>
 PresampledLight Lights::presample(const LightSample& s) const {
-  if (!isArea(s.light)) return {.sample = s, .probability = pdf(s)};
+  if (!isArea(s.light)) return {.sample = s, .pdf = pdf(s)};
   const TriangleLight& light = triangles_[s.light];
   PresampledLight p{light.point(s.uv), light.cross2Area(), light.radiance, s, light.probability, light.flags};
   if constexpr (F.textured)

@@ -86,7 +86,7 @@ class ShadeState {
   core::vec2 gaze() const { return gazeNow_; }
   core::In<std::uint8_t> fovea() const { return fovea_; }
   PassTimes& times() { return times_; }
-  std::int64_t badPixels() const { return restir_.badPixels(); }
+  std::int64_t badPixels() const { return restir_.badPixels() + (second_ ? second_->badPixels() : 0); }
   /// Null unless asked for.
   const restir::Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
 

@@ -6,8 +6,7 @@
 // there, and the energy of hidden points would be lost on reuse. So a BSDF sample passes through occluders: its ray is
 // followed through the emitters alone, and every one on it is a candidate of that one sample; so is the environment at
 // its end. Then the density of light point y is exactly pdf(direction) x (area cos_light / d^2, or d omega / d(u, v)),
-// hidden or not. With n batches of L light and B BSDF
-// samples, the balance heuristic gives every candidate the weight
+// hidden or not. With n batches of L light and B BSDF samples, the balance heuristic gives every candidate the weight
 //   [candidates 1]  w = p-hat(y) / (n (L p_light(y) + B p_bsdf(y)))
 #pragma once
 
@@ -82,7 +81,7 @@ class Candidates {
         add(y, target_.incident(y), lights.pdf(y), rng, builder);
       } else {
         const core::PresampledLight& y = tile_[rng.below(LightTiles::kTileSize)];
-        add(y.sample, target_.incident(y), y.probability, rng, builder);
+        add(y.sample, target_.incident(y), y.pdf, rng, builder);
       }
     }
   }

@@ -14,7 +14,6 @@ using core::LightFeatures;
 using core::Lights;
 using core::LightSample;
 using core::Rng;
-using core::vec2;
 using core::vec3;
 
 /// A surface, its reflection to the camera, and what lights it.

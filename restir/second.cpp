@@ -1,3 +1,4 @@
+// Running the second history of reservoirs, and weighing it against the first.
 #include "restir/second.h"
 
 #include "restir/kernel.h"
@@ -30,11 +31,7 @@ twohistory::PairCovariance<float> measure(const Frame& frame, PlanesView<const f
 }  // namespace
 
 SecondHistory::SecondHistory(int width, int height)
-    : state_(width, height),
-      ledgerBefore_(width, height),
-      ledger_(width, height),
-      weight_(width, height, 1),
-      radiance_(width, height) {}
+    : state_(width, height), weight_(width, height, 1), radiance_(width, height) {}
 
 void SecondHistory::blendInto(const RestirParameters& parameters, const Frame& frame, const RestirState& first,
                               PlanesView<float> radiance) {
@@ -46,8 +43,7 @@ void SecondHistory::blendInto(const RestirParameters& parameters, const Frame& f
   shareCandidates(mine, own, first, state_);
   reuseTemporally(mine, own, state_);
   reuseSpatiallyAndShade(mine, own, state_, radiance_);
-  advanceLedgers(parameters, frame, first);
-  if (parameters.second.blend == SecondBlend::counts) weighByCounts(frame.tile);
+  if (parameters.second.blend == SecondBlend::counts) weighByCounts(parameters, frame, first);
   if (parameters.second.blend == SecondBlend::measured) weighByMeasurement(frame, radiance);
   if (parameters.second.blend == SecondBlend::mean) weight_.fill(0.5f);
   core::forEachPixel(
@@ -58,25 +54,18 @@ void SecondHistory::blendInto(const RestirParameters& parameters, const Frame& f
       frame.tile);
 }
 
-void SecondHistory::advanceLedgers(const RestirParameters& p, const Frame& frame, const RestirState& first) {
+void SecondHistory::weighByCounts(const RestirParameters& p, const Frame& frame, const RestirState& first) {
+  if (ledger_.empty()) ledger_ = ledgerBefore_ = Image<Ledger<2>>(weight_.width(), weight_.height());
   std::swap(ledger_, ledgerBefore_);
   const twohistory::Policies<2> policies{p.temporal.policy, p.second.policy};
   core::forEachPixel(
-      ledger_.width(), ledger_.height(),
+      weight_.width(), weight_.height(),
       [&](int x, int y) {
         const Ledger<2> old = twohistory::gather<2, float>(first.taps(x, y), ledgerBefore_);
         ledger_(x, y) = twohistory::advance(old, policies, frame.samples(x, y));
-      },
-      frame.tile);
-}
-
-void SecondHistory::weighByCounts(int tile) {
-  core::forEachPixel(
-      weight_.width(), weight_.height(),
-      [&](int x, int y) {
         weight_(x, y) = twohistory::leastVarianceWeight(twohistory::pairOf(ledger_(x, y), 0, 1));  // [blend opt]
       },
-      tile);
+      frame.tile);
 }
 
 void SecondHistory::weighByMeasurement(const Frame& frame, PlanesView<const float> first) {

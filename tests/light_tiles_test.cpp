@@ -37,7 +37,7 @@ TEST(LightTiles, APackedSampleShinesAsItselfBitForBit) {
     EXPECT_EQ(a.direction, b.direction);
     EXPECT_EQ(a.radiance, b.radiance);
     EXPECT_EQ(a.geometry, b.geometry);
-    EXPECT_EQ(lights.pdf(y), packed.probability);
+    EXPECT_EQ(lights.pdf(y), packed.pdf);
   }
 }
 

@@ -50,13 +50,8 @@ EfficiencyConfig efficiencyConfigFrom(Json json, const std::vector<std::string>&
   applyAssignments(json, assignments);
   EfficiencyConfig config;
   fromJson(json, config);
-  Config experiment = experimentOf(config);
-  experiments::requireConsistent(experiment);
+  experiments::requireConsistent(experimentOf(config));
   const std::vector<Method> methods = methodsOf(config);
-  for (const Method& m : methods) {
-    experiment.shade.restir = m.restir;
-    experiments::requireConsistent(experiment);
-  }
   targetCountOf(config, methods);
   baselinesOf(config, methods);
   return config;

@@ -148,7 +148,7 @@ class Measurement {
     add("relMSE", mean(&Metrics::relMse));
     add("energy_ratio", mean(&Metrics::energyRatio));
     for (const auto& [pass, ms] : c.times.passes()) addPass(label, pass, ms);
-    result_.badPixels += c.state.badPixels();
+    result_.badPixels += c.state.badPixels() + (c.second ? c.second->badPixels() : 0);
   }
 
   void addPass(const std::string& variant, const std::string& pass, double ms) {
