@@ -4,8 +4,8 @@
 // -z and u = 0.75 is +z; row 0 is around +y. With theta from +y and phi from +x towards +z:
 //   [env 1]  (u, v) = (1/2 + phi / (2 pi), theta / pi)
 //   [env 2]  d omega = 2 pi^2 sin(theta) du dv
-// The same map looks the same in three.js, and in Blender whose z-up scene was exported to glTF. Texels are constant:
-// no mixing between neighbours, so that the density below is exactly proportional to the luminance within a texel row.
+// By derivation that is also how three.js places such a map (not tried there). Texels are constant: no mixing between
+// neighbours, so that the density below is exactly proportional to the luminance within a texel row.
 // Sources: Pharr et al., "Physically Based Rendering" (2023), section 12.5; Walker 1977 (core/alias_table.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// Parsing Radiance pictures.
 #include "core/hdr.h"
 
 #include <sstream>

@@ -2,7 +2,7 @@
 //
 // A step of level counts as visible from a Weber contrast of 1 %: thresholds of luminance edges under good conditions
 // lie at 1 to 2 % (Cornsweet, Pinsker, "Luminance discrimination of brief flashes under various conditions of
-// adaptation", 1965), whatever the level.
+// adaptation", 1965; cited from memory), whatever the level.
 #pragma once
 
 #include <array>

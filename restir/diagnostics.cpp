@@ -1,3 +1,4 @@
+// Reading ages, duplicates and counts off the reservoirs.
 #include "restir/diagnostics.h"
 
 namespace restir {

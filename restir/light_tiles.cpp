@@ -1,3 +1,4 @@
+// Filling tiles, and which block of pixels gets which.
 #include "restir/light_tiles.h"
 
 #include <algorithm>

@@ -19,6 +19,7 @@ namespace restir {
 /// automatic: where the lights outgrow the cache.
 enum class TileUse { automatic, always, never };
 
+/// The tiles of one frame. Their content depends on seed, frame and lights alone, not on threads or render tiles.
 class LightTiles {
  public:
   static constexpr int kTileSize = 512;  ///< samples; 32 KiB

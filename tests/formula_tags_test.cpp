@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 using Tags = std::set<std::string>;
 
-/// Tags are [family name]; others, such as [SVGF (5)] or [Tu24], name formulas of the literature.
+/// Tags are [family name]. Others name formulas of the literature ([SVGF (5)], [Tu24]) or of the header that they stand
+/// in ([merge 1], [env 1], [tree 1]).
 Tags tagsOf(const std::string& text) {
   static const std::regex kTag(R"(\[(?:ledger|blend|check|moments|clamp|told)(?: [^\]\n]*)?\])");
   Tags tags;

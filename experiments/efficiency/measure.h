@@ -17,7 +17,7 @@ inline constexpr const char* kErrors[] = {"relMSE_trimmed", "relMSE"};
 /// Renders every frame with every method at every count in turn, so that a noisy machine hits all alike. What all
 /// share (poses, surfaces, reprojection) is done once a frame and timed under "shared"; the first frame's pose, which
 /// builds the structures of lights, under a pass of its own. Methods without memory leave out the warm-up. All methods'
-/// reservoirs are in memory together: about 250 bytes a pixel for each method and count.
+/// reservoirs are in memory together: about 150 bytes a pixel for each method and count.
 ///
 /// Rows: kTime, kErrors and energy_ratio, region "full", the variant named by labelOf. passes: medians of milliseconds.
 /// advanced: called with the samples a pixel that were shaded since the last call; may be empty.
