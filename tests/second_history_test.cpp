@@ -80,6 +80,13 @@ TEST(SecondHistory, BlendedByCountsIsUnbiased) {
   EXPECT_GT(std::abs(tests::compare(estimateOf(moving, biased, 300), truth).z), kLargestZ);
 }
 
+TEST(SecondHistory, HalfOfEachIsUnbiased) {
+  const auto moving = world(true);
+  const auto c = tests::compare(estimateOf(moving, with(SecondBlend::mean), 1200), tests::reference(moving, 32, 512));
+  EXPECT_LT(std::abs(c.z), kLargestZ) << c.ratio;
+  EXPECT_LT(c.detectable, 0.01);
+}
+
 TEST(SecondHistory, WeightsAreCountsAlone) {
   const auto still = world(false);
   core::Image<float> a, b;
