@@ -200,7 +200,7 @@ TEST(EfficiencyConfig, RefusesWhatIsWrong) {
   for (const Json& counts : {Json{0, 1}, Json{-1}, Json{1.5}, Json{5000}, Json{2, 1}, Json{1, 1}})
     expectRefused({{"counts", counts}}, "counts");
   expectRefused({{"targetCount", 3}}, "config.targetCount");
-  expectRefused({{"baselines", {"tree"}}}, "config.baselines");
+  expectRefused({{"baselines", {"nosuch"}}}, "config.baselines");
   expectRefused({{"seeds", {1, 1}}}, "config.seeds");
   expectRefused({{"scenes", Json::array()}}, "config.scenes");
   expectRefused({{"scenes", {"cornell", "cornell"}}}, "config.scenes");
@@ -225,7 +225,7 @@ TEST(EfficiencyConfig, MethodsStartFromOthers) {
 }
 
 TEST(EfficiencyConfig, DefaultsAreConsistent) {
-  EXPECT_EQ(methodsOf(efficiencyConfigFrom(Json::object(), {})).size(), 3u);
+  EXPECT_EQ(methodsOf(efficiencyConfigFrom(Json::object(), {})).size(), 6u);
 }
 
 /// Small frames of cornell: two methods at two counts.

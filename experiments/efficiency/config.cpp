@@ -41,7 +41,13 @@ const Method* find(const std::vector<Method>& methods, const std::string& name) 
 }  // namespace
 
 std::vector<Json> defaultMethods() {
-  return {{{"name", "ris"}, {"restir", {{"reuse", "none"}}}, {"counts", {1, 2, 4, 8, 16}}},
+  const auto baseline = [](const char* name) {
+    return Json{{"name", name}, {"restir", {{"reuse", "none"}, {"withoutReuse", name}}}, {"counts", {1, 4, 16}}};
+  };
+  return {baseline("uniform"),
+          baseline("power"),
+          baseline("tree"),
+          baseline("ris"),
           {{"name", "balance"}, {"restir", {{"reuse", "both"}, {"mis", "balance"}}}},
           {{"name", "pairwise"}, {"restir", {{"reuse", "both"}, {"mis", "pairwise"}}}}};
 }

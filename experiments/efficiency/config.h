@@ -25,7 +25,7 @@ void describe(V& v, Method& p) {
   v("counts", p.counts, "samples a pixel, ascending", 1.0, core::kMaxSamples);
 }
 
-/// Resampling alone, and ReSTIR with two kinds of MIS weights.
+/// The four baselines without reuse, and ReSTIR with two kinds of MIS weights.
 std::vector<Json> defaultMethods();
 
 struct EfficiencyConfig {
