@@ -39,7 +39,8 @@ std::vector<Variant>& extensions() {
   return all;
 }
 
-/// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one.
+/// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one. A blend whose lag is taken
+/// away can afford a longer W and profits from a faster F.
 std::vector<Variant> ownLibrary() {
   const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
   Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
@@ -51,6 +52,10 @@ std::vector<Variant> ownLibrary() {
   Variant bold = checked;
   bold.name = "lag-bold";
   bold.histories[1] = samples(0.97);
+  Variant debiased = checked;
+  debiased.name = "lag-debiased";
+  debiased.histories = {u, samples(0.98), samples(0.6)};
+  debiased.blend.correction = 1;
   return {make("none", {frames(0)}),
           make("unweighted", {u}),
           make("unweighted-96", {frames(0.96)}),
@@ -68,6 +73,7 @@ std::vector<Variant> ownLibrary() {
           all,
           checked,
           bold,
+          debiased,
           make("oracle", {u, w}, BlendMode::oracle)};
 }
 

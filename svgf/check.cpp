@@ -34,17 +34,11 @@ template <int K>
 void checkBlend(const twohistory::ValidationParameters& parameters, const std::array<twohistory::Policy, K>& policies,
                 In<Taps> taps, PlanesView<const float> radiance, In<float> check, const FilterState<K>& s,
                 twohistory::Validation& validation) {
-  validation.fit(taps.width, taps.height);
-  const twohistory::UsualCount<K> usual(policies);
-  validation.update(
-      parameters, taps, Innovations<K>{s, policies[0], radiance, check},
-      [&](int x, int y) {
-        const float n = s.samples(x, y);
-        return twohistory::regimeOf(n, usual(s.ledgerAt(x, y), n));
-      },
-      [&](std::ptrdiff_t i, int j) {
-        return j < K ? core::luminance(s.history.difference[j - 1].view().at(i)) : 0.0f;
-      });
+  validation.fit(taps.width, taps.height, twohistory::UsualCount(policies));
+  validation.update(parameters, taps, Innovations<K>{s, policies[0], radiance, check}, [&](std::ptrdiff_t i, int j) {
+    if (j == 0) return core::luminance(s.history.base.view().at(i));
+    return j < K ? core::luminance(s.history.difference[j - 1].view().at(i)) : 0.0f;
+  });
 }
 
 #define INSTANTIATE(K)                                                                                           \

@@ -112,16 +112,37 @@ TEST_P(EveryVariant, FillsPixelsThatNeverSawASampleFromTheirNeighbours) {
     for (int x = 11; x < 14; ++x) EXPECT_NEAR(out.view().load(x, y).y, 1, 0.35) << x << ", " << y;
 }
 
+double meanOf(const Planes& image) {
+  double sum = 0;
+  for (int y = 0; y < image.height(); ++y)
+    for (int x = 0; x < image.width(); ++x) sum += image.view().load(x, y).y;
+  return sum / (image.width() * image.height());
+}
+
 /// Mean of a filtered grey wall: 6 seeds x 1120 pixels, standard error below 0.5 %.
 double filteredMean(const Variant& variant, int variatesPerSample) {
   double sum = 0;
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     Synthetic input(kWidth, kHeight, 60 + seed, grey, eightOrOne, variatesPerSample);
-    const Planes out = filterSequence(input, variant, 25);
-    for (int y = 0; y < kHeight; ++y)
-      for (int x = 0; x < kWidth; ++x) sum += out.view().load(x, y).y;
+    sum += meanOf(filterSequence(input, variant, 25));
   }
-  return sum / (6 * kWidth * kHeight);
+  return sum / 6;
+}
+
+// Weights underflow on the way; values must outlive them.
+TEST_P(EveryVariant, RemembersThroughThousandsOfFramesWithoutSamples) {
+  constexpr int kSide = 8, kLit = 40, kFrames = 3000;
+  Synthetic input(kSide, kSide, 9, grey, [](int, int, int frame) { return frame < kLit ? 4 : 0; });
+  FilterState state(variant_, kSide, kSide);
+  Planes out(kSide, kSide);
+  double lit = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    filter(input.frame(i), variant_, {}, state, out);
+    if (i == kLit - 1) lit = meanOf(out);
+    if (i % 100 == 99) {
+      ASSERT_NEAR(meanOf(out), lit, 0.1 * lit) << "frame " << i;
+    }
+  }
 }
 
 TEST_P(EveryVariant, KeepsTheMeanOfAStationarySignal) {

@@ -177,9 +177,9 @@ TEST(Blends, DoNotChangeWithExposure) {
     core::Rng rng(23, core::Pass::other, i, 0);
     const auto row = randomWindow(rng);
     const twohistory::Against<3> against(2);
-    const auto before = lagWeights(l, against, windowEvidence(l, against, *row, 0, true), -0.5f);
+    const auto before = lagWeights(l, against, windowEvidence(l, against, *row, 0, true), 1, -0.5f);
     scaleRadiance(*row, i % 2 ? 0x1p-14f : 0x1p20f);
-    ASSERT_EQ(before, lagWeights(l, against, windowEvidence(l, against, *row, 0, true), -0.5f)) << "schedule " << i;
+    ASSERT_EQ(before, lagWeights(l, against, windowEvidence(l, against, *row, 0, true), 1, -0.5f)) << "schedule " << i;
   }
 }
 
@@ -189,7 +189,7 @@ TEST(Blends, OfThreeHistoriesSumToOneWithinTheirLimits) {
     core::Rng rng(24, core::Pass::other, i, 0);
     const auto row = randomWindow(rng);
     const twohistory::Against<3> against(2);
-    const auto lambda = lagWeights(l, against, windowEvidence(l, against, *row, 0, true), -0.5f);
+    const auto lambda = lagWeights(l, against, windowEvidence(l, against, *row, 0, true), 1, -0.5f);
     ASSERT_NEAR(lambda[0] + lambda[1] + lambda[2], 1, 1e-4f) << "schedule " << i;
     ASSERT_GE(std::min(lambda[0], lambda[1]), -0.5f - 1e-4f);
     ASSERT_GE(lambda[2], -1e-4f);

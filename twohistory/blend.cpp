@@ -14,6 +14,13 @@ using core::vec3;
 template <int K>
 using Weights = std::array<float, K>;
 
+/// What a blend asks for in one pixel.
+template <int K>
+struct Proposal {
+  Weights<K> lambda{};
+  std::array<float, K> lag{};  ///< of each history, luminance: what it is above the truth, as far as one can see
+};
+
 template <int K>
 Weights<K> pairWeights(const BlendParameters& p, float first) {
   Weights<K> w{};
@@ -28,22 +35,36 @@ struct Sink {
   const Histories<K>& h;
   const Blended& out;
   int reported;            ///< history whose weight is written
+  float correction;        ///< share of the remaining lag to take away
   Validation* validation;  ///< null = blends go unchecked
 
-  /// Books the blend's weights for the next check, and takes back what earlier checks refuted.
-  Weights<K> checked(int x, int y, Weights<K> lambda) const {
-    Shifts share{};
-    for (int j = 1; j < K; ++j) share[j - 1] = lambda[j];
-    validation->storeShares(x, y, share);
-    const Shifts keep = validation->keep(x, y, validation->regime(x, y));
-    lambda[0] = 1;
-    for (int j = 1; j < K; ++j) lambda[j] *= keep[j - 1], lambda[0] -= lambda[j];
-    return lambda;
+  /// [blend residual] q = -(sum_j lambda_j lag_j) / lum(X_0), within [-1, 8].
+  float corrected(const vec3& base, const Weights<K>& lambda, const std::array<float, K>& lag) const {
+    const float brightness = luminance(base);
+    float left = 0;
+    for (int j = 0; j < K; ++j) left += lambda[j] * lag[j];
+    if (!(correction > 0) || !(brightness > 0) || left == 0) return 0;
+    return std::clamp(-correction * left / brightness, -1.0f, 8.0f);
   }
 
-  void write(int x, int y, const Ledger<K>& ledger, const Weights<K>& wanted) const {
-    const Weights<K> lambda = validation ? checked(x, y, wanted) : wanted;
-    vec3 sum = h.colour[0].load(x, y);  // weights have sum 1, and differences are what is stored
+  /// Takes back of the blend's weights what earlier checks refuted, and books them for the next check. Returns q.
+  float check(int x, int y, const Ledger<K>& ledger, const vec3& base, const Proposal<K>& wanted,
+              Weights<K>& lambda) const {
+    const Regime regime = validation->regime(ledger, h.samples(x, y));
+    const Shifts keep = validation->keep(x, y, regime);
+    Shifts share{};
+    lambda[0] = 1;
+    for (int j = 1; j < K; ++j) share[j - 1] = lambda[j], lambda[j] *= keep[j - 1], lambda[0] -= lambda[j];
+    share[kCorrection] = corrected(base, lambda, wanted.lag);
+    validation->book(x, y, regime, share);
+    return keep[kCorrection] * share[kCorrection];
+  }
+
+  void write(int x, int y, const Ledger<K>& ledger, const Proposal<K>& wanted) const {
+    const vec3 base = h.colour[0].load(x, y);
+    Weights<K> lambda = wanted.lambda;
+    const float q = validation ? check(x, y, ledger, base, wanted, lambda) : corrected(base, lambda, wanted.lag);
+    vec3 sum = base + q * base;  // weights have sum 1, and differences are what is stored
     for (int j = 1; j < K; ++j)
       if (lambda[j] != 0) sum += lambda[j] * h.colour[j].fromBase(x, y);
     const float own = ledger.covariance(0, 0);
@@ -127,10 +148,15 @@ Weights<K> pairWeightsByDrift(const Ledger<K>& ledger, const BlendParameters& p,
 }
 
 template <int K>
-Weights<K> driftWeights(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
-  if (p.mode != BlendMode::lagAll) return pairWeightsByDrift<K>(ledger, p, row, i);
+Proposal<K> proposalByDrift(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
+  if (p.mode != BlendMode::lagAll) return {pairWeightsByDrift<K>(ledger, p, row, i)};
   const Against<K> against(p.pair[1]);
-  return lagWeights(ledger, against, windowEvidence(ledger, against, row, i, p.noise == NoiseEstimate::safe), p.lowest);
+  const WindowEvidence<K> seen = windowEvidence(ledger, against, row, i, p.noise == NoiseEstimate::safe);
+  const float c = p.correction, rho = (1 - c) * (1 - c) + c * c * p.lagError * p.lagError;  // [blend rho]
+  Proposal<K> proposal{lagWeights(ledger, against, seen, rho, p.lowest)};
+  const float unit = std::sqrt(row.meanSampleVariance(i)) * seen.fresh;
+  for (int j = 0; j < K; ++j) proposal.lag[j] = seen.bias[j] * unit;
+  return proposal;
 }
 
 /// Fills the planes that sumDrift averages: lum(X_j - X_k) and its noise. Both are 0 for twins.
@@ -181,7 +207,7 @@ void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendPa
       sumDrift(guide, p.edges, differences.data(), count, h.sampleVariance, p.radius, y, begin, end, row);
       for (int x = begin; x < end; ++x) {
         const Ledger<K> ledger = h.ledger(x, y);
-        sink.write(x, y, ledger, driftWeights(ledger, p, row, x - begin));
+        sink.write(x, y, ledger, proposalByDrift(ledger, p, row, x - begin));
       }
     }
   });
@@ -209,7 +235,7 @@ void blendByPixel(const Histories<K>& h, const BlendParameters& p, const TwinTil
               continue;
             }
             const Ledger<K> ledger = h.ledger(x, y);
-            sink.write(x, y, ledger, ownWeights(h, ledger, p, x, y));
+            sink.write(x, y, ledger, {ownWeights(h, ledger, p, x, y)});
           }
       },
       TwinTiles::kSide);
@@ -223,7 +249,7 @@ void blend(const Histories<K>& h, const core::Guide& guide, const BlendParameter
   const bool pairs = usesPair(p.mode);
   CHECK_LT(p.pair[0], K);
   if (pairs) CHECK_LT(p.pair[1], K);
-  const Sink<K> sink{h, out, p.pair[0], p.validation.on ? &validation : nullptr};
+  const Sink<K> sink{h, out, p.pair[0], p.correction, p.validation.on ? &validation : nullptr};
   const TwinTiles* twins = usefulTwins(h.twins, p);
   if (p.mode == BlendMode::lag || p.mode == BlendMode::lagAll || p.mode == BlendMode::consistent)
     return blendByDrift(h, guide, p, twins, scratch, sink);

@@ -54,6 +54,8 @@ struct BlendParameters {
   BlendMode mode = BlendMode::first;
   std::array<int, 2> pair{0, 1};         ///< histories; p weighs the first
   float lowest = -0.5f, highest = 1.5f;  ///< range of p in `lag`; lowest also bounds `lagAll`
+  float correction = 0;                  ///< c: share of the lag left in `lagAll`'s blend that is taken away, in [0, 1]
+  float lagError = 0.5f;                 ///< epsilon: relative standard deviation of that lag's estimate
   int radius = 3;                        ///< of the window that estimates drift, pixels
   NoiseEstimate noise = NoiseEstimate::predicted;
   core::EdgeParameters edges;
@@ -80,6 +82,8 @@ void describe(V& v, BlendParameters& p) {
   v("second", p.pair[1], "index of the other history", 0.0, 2.0);
   v("lowest", p.lowest, "least p (lag) or least weight of any history (lagAll)", -4.0, 0.0);
   v("highest", p.highest, "largest p (lag)", 1.0, 5.0);
+  v("correction", p.correction, "share of the lag left in the blend that is taken away (lagAll)", 0.0, 1.0);
+  v("lagError", p.lagError, "relative standard deviation of the estimate of that lag", 0.0, 1.0);
   v("radius", p.radius, "radius in pixels of the window that estimates drift", 0.0, 8.0);
   v.choice("noise", p.noise, {{"predicted", NoiseEstimate::predicted}, {"safe", NoiseEstimate::safe}},
            "how the noise of the histories' mean difference is estimated");

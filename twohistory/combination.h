@@ -105,9 +105,9 @@ Real varianceOf(const Matrix<K, Real>& c, const std::array<Real, K>& lambda) {
   return std::max(Real(0), sum);
 }
 
-/// x with (m + ridge) x = 1, by Cholesky; m symmetric, positive semi-definite, ridge > 0.
+/// x with (m + ridge) x = right, by Cholesky; m symmetric, positive semi-definite, ridge > 0.
 template <int K, class Real>
-std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
+std::array<Real, K> solvePositive(const Matrix<K, Real>& m, const std::array<Real, K>& right, Real ridge) {
   Matrix<K, Real> l{};  // m + ridge = l l'
   for (int j = 0; j < K; ++j) {
     for (int k = 0; k <= j; ++k) {
@@ -116,9 +116,8 @@ std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
       l[j][k] = j == k ? std::sqrt(std::max(sum, ridge)) : sum / l[k][k];
     }
   }
-  std::array<Real, K> x{};
+  std::array<Real, K> x = right;
   for (int j = 0; j < K; ++j) {
-    x[j] = 1;
     for (int i = 0; i < j; ++i) x[j] -= l[j][i] * x[i];
     x[j] /= l[j][j];
   }
@@ -127,6 +126,13 @@ std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
     x[j] /= l[j][j];
   }
   return x;
+}
+
+template <int K, class Real>
+std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
+  std::array<Real, K> ones;
+  ones.fill(1);
+  return solvePositive<K, Real>(m, ones, ridge);
 }
 
 /// Weights of sum 1 with the least lambda' C lambda among the histories whose bit is set in `subset`; 0 for the others.

@@ -34,10 +34,11 @@ template <int K>
 struct WindowEvidence {
   std::array<float, K> bias{};  ///< b_j
   float noise = 1;              ///< kappa, >= 1: measured over predicted variance of the histories' differences
+  float fresh = 1;              ///< how much of the reference's age the gaps span, <= 1: what they say of it
 };
 
 /// [blend bias] b_j = D_j + b_r with D_j the mean difference from the reference, shrunk by its noise, and
-/// b_r = G min(a_r, L/2 min(1, L / a_r)), G the slope of all D_j against the gaps of age, L the longest gap.
+/// b_r = G min(a_r, L/2 fresh), fresh = min(1, L / a_r), G the slope of all D_j against the gaps of age, L the longest.
 /// Extrapolating further than ages reach is not supported by what was seen: a pixel without samples grows old without
 /// learning anything.
 ///
@@ -60,21 +61,23 @@ WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, c
     if (measuredNoise) e.noise = std::max(e.noise, cappedRatio(row.spread(k, i), predicted));  // [blend kappa]
   }
   if (!(gaps > 1e-3f)) return e;
-  const float age = ledger.age(a.reference), reach = 0.5f * longest * std::min(1.0f, cappedRatio(longest, age));
-  const float own = slope / gaps * std::min(age, reach);
+  const float age = ledger.age(a.reference);
+  e.fresh = longest < age ? std::max(longest, 0.0f) / age : 1.0f;
+  const float own = slope / gaps * std::min(age, 0.5f * longest * e.fresh);
   for (float& b : e.bias) b += own;  // [blend bias]
   return e;
 }
 
-/// [blend lag] with M = kappa C + b b'. A slower history may get a negative weight, down to `lowest`, in proportion to
-/// the evidence of its bias (b_j^2 over its variance, at most 1); the reference never.
+/// [blend lag] with M = kappa C + rho b b', rho the share of b that nothing takes away afterwards. A slower history may
+/// get a negative weight, down to `lowest`, in proportion to the evidence of its bias (b_j^2 over its variance, at most
+/// 1); the reference never.
 template <int K>
-std::array<float, K> lagWeights(const Ledger<K>& ledger, const Against<K>& a, const WindowEvidence<K>& e,
+std::array<float, K> lagWeights(const Ledger<K>& ledger, const Against<K>& a, const WindowEvidence<K>& e, float rho,
                                 float lowest) {
   Matrix<K, float> m{};
   std::array<float, K> limit{};
   for (int j = 0; j < K; ++j) {
-    for (int k = 0; k < K; ++k) m[j][k] = e.noise * ledger.covariance(j, k) + e.bias[j] * e.bias[k];
+    for (int k = 0; k < K; ++k) m[j][k] = e.noise * ledger.covariance(j, k) + rho * e.bias[j] * e.bias[k];
     const float variance = e.noise * ledger.covariance(j, j);
     if (j != a.reference) limit[j] = lowest * std::min(1.0f, cappedRatio(e.bias[j] * e.bias[j], variance));
   }

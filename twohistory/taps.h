@@ -18,6 +18,14 @@ struct Taps {
 /// The one tap of a pixel that stays where it is.
 inline Taps stillTap(std::int32_t pixel) { return {{pixel, pixel, pixel, pixel}, {1, 0, 0, 0}}; }
 
+/// Index k of the tap with the largest b, the first of equals.
+inline int strongest(const Taps& taps) {
+  int best = 0;
+  for (int k = 1; k < 4; ++k)
+    if (taps.b[k] > taps.b[best]) best = k;
+  return best;
+}
+
 /// How values that cannot be mixed (reservoirs) choose one tap. Never looks at the values.
 enum class Choice { best, stochastic };
 
@@ -26,8 +34,7 @@ inline Taps chooseTap(const Taps& taps, Choice choice, float u) {
   if (!taps.valid()) return taps;
   int chosen = 0;
   if (choice == Choice::best) {
-    for (int k = 1; k < 4; ++k)
-      if (taps.b[k] > taps.b[chosen]) chosen = k;
+    chosen = strongest(taps);
   } else {
     float sum = 0;
     for (int k = 0; k < 4; ++k) {

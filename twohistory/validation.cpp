@@ -2,56 +2,130 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "twohistory/combination.h"
 
 namespace twohistory {
 
-void Evidence::add(const Innovation& r, const Shifts& shift) {
-  const double w = static_cast<double>(r.weight), v = static_cast<double>(r.value);
-  const double a = static_cast<double>(shift[0]), b = static_cast<double>(shift[1]);
-  product[0] += w * a * v, product[1] += w * b * v;
-  square[0] += w * a * a, square[1] += w * a * b, square[2] += w * b * b;
-  residual += w * v * v, ++count;
+UsualCount::UsualCount(std::span<const Policy> policies) {
+  for (std::size_t j = 0; j < policies.size(); ++j) {
+    if (policies[j].forgetting != Forgetting::decay || !(policies[j].amount < 1)) continue;
+    int& slot = policies[j].weighting == Weighting::frames ? frames_ : samples_;
+    if (slot < 0) slot = static_cast<int>(j);
+  }
+  if (frames_ >= 0 && samples_ >= 0)
+    scale_ = static_cast<float>((1 - policies[static_cast<std::size_t>(samples_)].amount) /
+                                (1 - policies[static_cast<std::size_t>(frames_)].amount));
 }
 
-void Evidence::accumulate(const Evidence& other, double factor) {
-  for (int i = 0; i < kShifts; ++i) product[i] += factor * other.product[i];
-  for (int i = 0; i < 3; ++i) square[i] += factor * other.square[i];
-  residual += factor * other.residual, count += factor * other.count;
+void Evidence::add(const Innovation& r, const Shifts& shift) {
+  const double w = static_cast<double>(r.weight), v = static_cast<double>(r.value);
+  int next = kShifts;
+  for (int j = 0; j < kShifts; ++j) {
+    const double d = w * static_cast<double>(shift[j]);
+    sum[j] += d * v;
+    for (int k = 0; k <= j; ++k) sum[next++] += d * static_cast<double>(shift[k]);
+  }
+  sum[next++] += w * v * v, ++sum[next];
 }
+
+void Evidence::accumulate(const Stored& other, double factor) {
+  for (int i = 0; i < kSums; ++i) sum[i] += factor * static_cast<double>(other[i]);
+}
+
+Evidence::Stored Evidence::stored() const {
+  Stored s;
+  std::transform(sum.begin(), sum.end(), s.begin(), [](double v) { return static_cast<float>(v); });
+  return s;
+}
+
+namespace {
+
+using System = Matrix<kShifts, double>;
+using Vector = std::array<double, kShifts>;
+
+/// The least of theta' m theta - 2 right' theta where each theta_i is 0, 1 or free, as the i-th ternary digit of
+/// `face` says.
+Vector leastOnFace(const System& m, const Vector& right, int face, double ridge) {
+  System free{};
+  Vector fixed{}, known{};
+  std::array<bool, kShifts> isFree{};
+  for (int i = 0; i < kShifts; ++i, face /= 3) isFree[i] = face % 3 == 2, fixed[i] = isFree[i] ? 0 : face % 3;
+  for (int i = 0; i < kShifts; ++i) {
+    known[i] = isFree[i] ? right[i] : fixed[i];
+    for (int j = 0; j < kShifts; ++j) {
+      free[i][j] = isFree[i] && isFree[j] ? m[i][j] : double(i == j);
+      if (isFree[i]) known[i] -= m[i][j] * fixed[j];
+    }
+  }
+  Vector theta = solvePositive<kShifts, double>(free, known, ridge);
+  for (int i = 0; i < kShifts; ++i)
+    if (!isFree[i]) theta[i] = fixed[i];
+  return theta;
+}
+
+/// The same over the unit cube: the least is on one of its 27 faces, edges and corners, its inside included.
+Vector leastInCube(const System& m, const Vector& right) {
+  constexpr int kFaces = 27;
+  double trace = 0, least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kShifts; ++i) trace += m[i][i];
+  Vector best{};
+  for (int face = 0; face < kFaces; ++face) {
+    const Vector theta = leastOnFace(m, right, face, 1e-12 * trace);
+    double value = 0;
+    bool inside = true;
+    for (int i = 0; i < kShifts; ++i) {
+      inside &= theta[i] >= 0 && theta[i] <= 1;
+      value -= 2 * right[i] * theta[i];
+      for (int j = 0; j < kShifts; ++j) value += theta[i] * m[i][j] * theta[j];
+    }
+    if (inside && value < least) least = value, best = theta;
+  }
+  return best;
+}
+
+}  // namespace
 
 // [check theta]
 Shifts Evidence::solve(const ValidationParameters& p) const {
-  if (!(count > 0) || !(residual > 0)) return {1, 1};
-  const double tau = static_cast<double>(p.trust), r = residual / count / (tau * tau);
-  const double a = square[0] + r, b = square[1], c = square[2] + r, u = product[0] + r, v = product[1] + r;
-  const double determinant = a * c - b * b;
-  double first = std::clamp((u * c - v * b) / determinant, 0.0, 1.0);
-  const double second = std::clamp((v - b * first) / c, 0.0, 1.0);  // best given the first, which may have been clamped
-  first = std::clamp((u - b * second) / a, 0.0, 1.0);
-  return {static_cast<float>(first), static_cast<float>(second)};
+  Shifts result{1, 1, 0};
+  const double residual = sum[kSums - 2], count = sum[kSums - 1];
+  if (!(count > 0) || !(residual > 0)) return result;
+  System m;
+  Vector right;
+  int next = kShifts;
+  for (int j = 0; j < kShifts; ++j) {
+    const double tau = static_cast<double>(j == kCorrection ? p.proof : p.trust);
+    const double prior = residual / count / (tau * tau);
+    right[j] = sum[j] + (j == kCorrection ? 0 : prior);
+    for (int k = 0; k <= j; ++k) m[j][k] = m[k][j] = sum[next++] + (j == k ? prior : 0);
+  }
+  const Vector theta = leastInCube(m, right);
+  std::transform(theta.begin(), theta.end(), result.begin(), [](double v) { return static_cast<float>(v); });
+  return result;
 }
 
-void Validation::fit(int width, int height) {
-  if (share_.width() == width && share_.height() == height) return;
-  share_ = core::Image<Shares>(width, height);
-  regime_ = core::Image<Regime>(width, height, Regime::equal);
+void Validation::fit(int width, int height, const UsualCount& usual) {
+  usual_ = usual;
+  if (booked_.width() == width && booked_.height() == height) return;
+  booked_ = core::Image<Booked>(width, height);
   evidence_ = core::Image<TileEvidence>((width + kTile - 1) / kTile, (height + kTile - 1) / kTile);
   std::array<Shifts, kRegimes> all;
-  for (Shifts& s : all) s.fill(1);
+  all.fill(Evidence{}.solve({}));
   keep_ = core::Image<std::array<Shifts, kRegimes>>(evidence_.width(), evidence_.height(), all);
 }
 
 void Validation::solve(const ValidationParameters& p) {
   const int width = keep_.width(), height = keep_.height();
-  TileEvidence all;
+  std::array<Evidence, kRegimes> all;
   for (int i = 0; i < width * height; ++i)
-    for (int c = 0; c < kRegimes; ++c) all[c].accumulate(evidence_.data()[i][c]);
+    for (int c = 0; c < kRegimes; ++c) all[c].accumulate(evidence_.data()[i][c], static_cast<double>(p.shared));
   core::forEachPixel(width, height, [&](int x, int y) {
     for (int c = 0; c < kRegimes; ++c) {
-      Evidence sum;
-      sum.accumulate(all[c], static_cast<double>(p.shared));
+      Evidence sum = all[c];
       for (int v = std::max(0, y - 1); v <= std::min(y + 1, height - 1); ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(x + 1, width - 1); ++u) sum.accumulate(evidence_(u, v)[c]);
+        for (int u = std::max(0, x - 1); u <= std::min(x + 1, width - 1); ++u) sum.accumulate(evidence_(u, v)[c], 1);
       keep_(x, y)[c] = sum.solve(p);
     }
   });

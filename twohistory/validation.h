@@ -1,18 +1,21 @@
 // Checks a blend against samples that it has not seen, and takes back what it does not keep.
 //
-// Last frame's blend moved away from history 0 by the sum of shifts delta_j = lambda_j lum(X_j - X_0). Let x be a
-// sample of this frame that is independent of all histories, and r = x - lum(gathered X_0). The expected squared error
-// of X_0 + sum theta_j delta_j, but for x's own variance, is then the mean of (r - sum theta_j delta_j)^2: its minimum
-// needs no truth, and no model of noise or drift. With w = n / (1 + n V_0) the precision of r in units of 1 / s2,
+// Last frame's blend moved away from history 0 by the sum of shifts delta_j: lambda_j lum(X_j - X_0) for each further
+// history, and a correction q lum(X_0) of the lag that is left. Let x be a sample of this frame that is independent of
+// all histories, and r = x - lum(gathered X_0). The expected squared error of X_0 + sum theta_j delta_j, but for x's
+// own variance, is then the mean of (r - sum theta_j delta_j)^2: its minimum with all theta in [0, 1] needs no truth,
+// and no model of noise or drift. With w = n / (1 + n V_0) the precision of r in units of 1 / s2,
 //
-//   [check theta]  (Q + R) theta = P + R 1,   Q_jk = sum w delta_j delta_k,   P_j = sum w delta_j r
+//   [check theta]  (Q + R) theta = P + R theta_0,   Q_jk = sum w delta_j delta_k,   P_j = sum w delta_j r
 //
-// over a tile, its neighbours and recent frames. R = (mean of w r^2) / tau^2 says how firmly the blend is believed
-// before it was checked. Sums are kept apart by count regime: where the fovea arrives, where it left, and elsewhere.
+// over a tile, its neighbours and recent frames. R_jj = (mean of w r^2) / tau_j^2 says how firmly theta_0 is believed
+// before there was a check: 1 for histories, 0 for the correction, which amplifies noise where it is wrong. Sums are
+// kept apart by count regime: where the fovea arrives, where it left, and elsewhere.
 #pragma once
 
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "core/image.h"
 #include "core/parallel.h"
@@ -24,6 +27,7 @@ struct ValidationParameters {
   bool on = false;
   float decay = 0.9f;   ///< of the sums, a frame
   float trust = 1;      ///< tau: standard deviation of theta around 1 before any check
+  float proof = 0.1f;   ///< tau_c: the same of the correction's theta, around 0: it must be proven first
   float shared = 0.1f;  ///< weight of the whole frame's evidence beside a tile's
 };
 
@@ -32,6 +36,7 @@ void describe(V& v, ValidationParameters& p) {
   v("on", p.on, "draw the blend back to history 0 where samples that it has not seen contradict it");
   v("decay", p.decay, "of the evidence, a frame", 0.0, 1.0);
   v("trust", p.trust, "standard deviation of the factor around 1 before any evidence", 1e-3, 1e3);
+  v("proof", p.proof, "standard deviation of the correction's factor around 0 before any evidence", 1e-3, 1e3);
   v("shared", p.shared, "weight of the whole frame's evidence beside a tile's own", 0.0, 1e6);
 }
 
@@ -44,11 +49,12 @@ inline Regime regimeOf(float n, float usual) {
 }
 
 /// Mean count that a pixel's histories remember, from one that weighs samples and one that weighs frames.
-template <int K>
 class UsualCount {
  public:
-  explicit UsualCount(const Policies<K>& policies);
+  UsualCount() = default;
+  explicit UsualCount(std::span<const Policy> policies);
   /// n where the histories cannot tell.
+  template <int K>
   float operator()(const Ledger<K>& ledger, float n) const {
     const bool known = frames_ >= 0 && samples_ >= 0 && ledger.weight[frames_] > 0;
     return known ? scale_ * ledger.weight[samples_] / ledger.weight[frames_] : n;
@@ -64,99 +70,123 @@ struct Innovation {
   float value = 0, weight = 0;
 };
 
-inline constexpr int kShifts = 2;  ///< histories beyond the first, at most
+inline constexpr int kShifts = 3;                ///< those of histories 1 and 2, then the correction
+inline constexpr int kCorrection = kShifts - 1;  ///< index of the latter
+inline constexpr int kCompared = kCorrection;    ///< histories beyond the first, at most
 using Shifts = std::array<float, kShifts>;
 
 /// Sums of one tile and regime.
 struct Evidence {
-  std::array<double, kShifts> product{};  ///< P
-  std::array<double, 3> square{};         ///< Q_00, Q_01, Q_11
-  double residual = 0, count = 0;         ///< sum w r^2, and of how many
+  static constexpr int kSquares = kShifts * (kShifts + 1) / 2;
+  static constexpr int kSums = kShifts + kSquares + 2;
+  using Stored = std::array<float, kSums>;
+
+  std::array<double, kSums> sum{};  ///< P_j; Q_jk for k <= j, row by row; of w r^2; of how many
 
   void add(const Innovation& r, const Shifts& shift);
-  void accumulate(const Evidence& other, double factor = 1);
+  void accumulate(const Stored& other, double factor);
+  Stored stored() const;
   /// [check theta]
   Shifts solve(const ValidationParameters& p) const;
+};
+
+/// What a blend shifted a pixel by, and in which regime: lambda_j within [-4, 4] and the correction q, in units of X_0,
+/// within [-8, 8], as signed squares of 7 and 8 bits, so that small ones are fine: 1 is off by at most 0.032.
+class Booked {
+ public:
+  Booked() = default;
+  Booked(Regime regime, const Shifts& shares) {
+    for (int j = 0; j < kCompared; ++j) {
+      const unsigned bit = static_cast<unsigned>(regime) >> j & 1u;
+      code_[j] = static_cast<std::uint8_t>(encode(shares[j], kMostShare, 63) << 1 | bit);
+    }
+    code_[kCorrection] = static_cast<std::uint8_t>(encode(shares[kCorrection], kMostCorrection, 127));
+  }
+  Regime regime() const { return static_cast<Regime>((code_[0] & 1u) | (code_[1] & 1u) << 1); }
+  /// Both 0 exactly where they were.
+  float lambda(int j) const { return decode(static_cast<std::int8_t>(code_[j]) >> 1, kMostShare, 63); }
+  float correction() const { return decode(static_cast<std::int8_t>(code_[kCorrection]), kMostCorrection, 127); }
+
+ private:
+  static constexpr float kMostShare = 4, kMostCorrection = 8;
+  static unsigned encode(float v, float most, float steps) {
+    const float root = std::sqrt(std::min(std::abs(v) / most, 1.0f));
+    return static_cast<unsigned>(std::lround(std::copysign(steps * root, v)));
+  }
+  static float decode(int code, float most, float steps) {
+    const float root = static_cast<float>(code) / steps;
+    return most * root * std::abs(root);
+  }
+
+  std::array<std::uint8_t, kShifts> code_{};
 };
 
 class Validation {
  public:
   static constexpr int kTile = 16;  ///< pixels on a side
 
-  std::size_t bytes() const { return share_.bytes() + regime_.bytes() + evidence_.bytes() + keep_.bytes(); }
+  std::size_t bytes() const { return booked_.bytes() + evidence_.bytes() + keep_.bytes(); }
   /// Makes room; forgets everything if the size is new.
-  void fit(int width, int height);
-  /// Reads this frame's independent samples against the last blend's shifts. innovation(x, y); regime(x, y).
-  /// difference(i, j): lum(X_j - X_0), j >= 1, at index i of the frame before, as the last blend saw it.
-  template <class InnovationAt, class RegimeAt, class DifferenceAt>
+  void fit(int width, int height, const UsualCount& usual);
+  /// Reads this frame's independent samples against the last blend's shifts. innovation(x, y).
+  /// difference(i, j): lum(X_j - X_0), or lum(X_0) for j = 0, at index i of the frame before, as the last blend saw it.
+  template <class InnovationAt, class DifferenceAt>
   void update(const ValidationParameters& p, core::In<Taps> taps, const InnovationAt& innovation,
-              const RegimeAt& regime, const DifferenceAt& difference);
-  Regime regime(int x, int y) const { return regime_(x, y); }
+              const DifferenceAt& difference);
+  template <int K>
+  Regime regime(const Ledger<K>& ledger, float n) const {
+    return regimeOf(n, usual_(ledger, n));
+  }
   /// Shares of the shifts to keep at a pixel.
   Shifts keep(int x, int y, Regime regime) const;
-  /// lambda_j of this frame's blend for j >= 1, before it is drawn back; kept to 1 / 64 within [-4, 4].
-  void storeShares(int x, int y, const Shifts& lambda) {
-    for (int j = 0; j < kShifts; ++j) share_(x, y)[j] = packShare(lambda[j]);
-  }
+  /// Notes what this frame's blend would shift by, before it is drawn back.
+  void book(int x, int y, Regime regime, const Shifts& shares) { booked_(x, y) = Booked(regime, shares); }
 
  private:
-  using TileEvidence = std::array<Evidence, kRegimes>;
-  using Shares = std::array<std::int8_t, kShifts>;
-  static constexpr float kShareSteps = 32;
-  static std::int8_t packShare(float lambda) {
-    return static_cast<std::int8_t>(std::lround(std::clamp(lambda * kShareSteps, -127.0f, 127.0f)));
-  }
+  using TileEvidence = std::array<Evidence::Stored, kRegimes>;
   template <class DifferenceAt>
   Shifts gathered(const Taps& t, const DifferenceAt& difference) const;
   void solve(const ValidationParameters& p);
 
-  core::Image<Shares> share_;
-  core::Image<Regime> regime_;
+  UsualCount usual_;
+  core::Image<Booked> booked_;
   core::Image<TileEvidence> evidence_;
   core::Image<std::array<Shifts, kRegimes>> keep_;
 };
-
-template <int K>
-UsualCount<K>::UsualCount(const Policies<K>& policies) {
-  for (int j = 0; j < K; ++j) {
-    if (policies[j].forgetting != Forgetting::decay || !(policies[j].amount < 1)) continue;
-    int& slot = policies[j].weighting == Weighting::frames ? frames_ : samples_;
-    if (slot < 0) slot = j;
-  }
-  if (frames_ >= 0 && samples_ >= 0)
-    scale_ = static_cast<float>((1 - policies[samples_].amount) / (1 - policies[frames_].amount));
-}
 
 template <class DifferenceAt>
 Shifts Validation::gathered(const Taps& t, const DifferenceAt& difference) const {
   Shifts delta{};
   for (int k = 0; k < 4; ++k) {
     if (!(t.b[k] > 0)) continue;
-    const Shares& share = share_.data()[t.pixel[k]];
-    for (int j = 0; j < kShifts; ++j)
-      if (share[j] != 0) delta[j] += t.b[k] * (share[j] / kShareSteps) * difference(t.pixel[k], j + 1);
+    const Booked& booked = booked_.data()[t.pixel[k]];
+    for (int j = 0; j < kCompared; ++j)
+      if (const float lambda = booked.lambda(j); lambda != 0)
+        delta[j] += t.b[k] * lambda * difference(t.pixel[k], j + 1);
+    if (const float q = booked.correction(); q != 0) delta[kCorrection] += t.b[k] * q * difference(t.pixel[k], 0);
   }
   return delta;
 }
 
-template <class InnovationAt, class RegimeAt, class DifferenceAt>
+template <class InnovationAt, class DifferenceAt>
 void Validation::update(const ValidationParameters& p, core::In<Taps> taps, const InnovationAt& innovation,
-                        const RegimeAt& regime, const DifferenceAt& difference) {
+                        const DifferenceAt& difference) {
   core::forEachTile(
       taps.width, taps.height,
       [&](int x0, int y0, int x1, int y1) {
-        TileEvidence fresh;
+        std::array<Evidence, kRegimes> fresh;
         for (int y = y0; y < y1; ++y)
           for (int x = x0; x < x1; ++x) {
-            regime_(x, y) = regime(x, y);
             const Innovation r = innovation(x, y);
-            if (r.weight > 0 && taps(x, y).valid())
-              fresh[static_cast<std::size_t>(regime_(x, y))].add(r, gathered(taps(x, y), difference));
+            const Taps& t = taps(x, y);
+            if (!(r.weight > 0) || !t.valid()) continue;
+            const auto c = static_cast<std::size_t>(booked_.data()[t.pixel[strongest(t)]].regime());
+            fresh[c].add(r, gathered(t, difference));
           }
         TileEvidence& kept = evidence_(x0 / kTile, y0 / kTile);
         for (int c = 0; c < kRegimes; ++c) {
           fresh[c].accumulate(kept[c], static_cast<double>(p.decay));
-          kept[c] = fresh[c];
+          kept[c] = fresh[c].stored();
         }
       },
       kTile);
