@@ -128,6 +128,13 @@ class SettingsLister {
       SettingsLister nested(prefix_ + name + ".");
       describe(nested, value);
       lines_.insert(lines_.end(), nested.lines_.begin(), nested.lines_.end());
+    } else if constexpr (requires { requires settings_detail::Described<typename T::value_type>; }) {
+      // A list of aggregates: how many there are, then what each of them has.
+      add(name, std::to_string(value.size()) + " of them", "", meaning);
+      typename T::value_type one{};
+      SettingsLister nested(prefix_ + name + "[].");
+      describe(nested, one);
+      lines_.insert(lines_.end(), nested.lines_.begin(), nested.lines_.end());
     } else {
       add(name, settings_detail::writeValue(value), settings_detail::rangeText({minimum, maximum}), meaning);
     }

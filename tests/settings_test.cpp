@@ -206,7 +206,8 @@ TEST(Settings, BytesThatAreNoUtf8GiveALine) {
 
 TEST(Settings, KeysAreListedWithDefaultsAndLimits) {
   const std::string text = listKeys(lab::Outer{});
-  for (const char* part : {"inner.share = 0.95", "[0, 1]", "kind = round", "round|square", "seed = 7", "kept a frame"})
+  for (const char* part : {"inner.share = 0.95", "[0, 1]", "kind = round", "round|square", "seed = 7", "kept a frame",
+                           "layers = 1 of them", "layers[].share = 0.95"})
     EXPECT_NE(text.find(part), std::string::npos) << part << " in\n" << text;
 }
 
