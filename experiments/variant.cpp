@@ -125,6 +125,8 @@ void requireConsistent(const Variant& v) {
   const bool pairs = twohistory::usesPair(v.blend.mode);
   if (v.blend.pair[0] >= count || (pairs && v.blend.pair[1] >= count))
     fail("its blend names a history that it does not have", "blend.first and blend.second count histories from 0");
+  if (v.blend.correction > 0 && v.blend.mode != BlendMode::lagAll)
+    fail("a correction without an estimate of lag", "give blend.mode lagAll, or blend.correction 0");
   if (pairs && v.blend.pair[0] == v.blend.pair[1]) fail("it blends a history with itself", "name two histories");
 }
 

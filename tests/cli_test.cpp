@@ -208,7 +208,8 @@ TEST_F(Cli, RunRefusesNamesThatCollideOrEscape) {
   write("config.json", R"({"frames":1,"width":8,"height":8,"seeds":[1]})");
   for (const char* wrong :
        {"'seeds=[1,1]'", "baseline=nosuch", R"('scenes=["cornell","cornell"]')",
-        R"('variants=["unweighted","unweighted"]')", R"('variants=["unweighted",{"like":"seed","name":"../evil"}]')"})
+        R"('variants=["unweighted","unweighted"]')", R"('variants=["unweighted",{"like":"seed","name":"../evil"}]')",
+        R"('variants=[{"like":"lag-uw","name":"c","blend":{"correction":1}}]')"})
     expectUsageError(base + wrong);
   EXPECT_FALSE(fs::exists(file("results")));
 }
