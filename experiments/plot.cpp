@@ -93,13 +93,55 @@ std::string polyline(const LinePlot& plot, const Line& line, const Axis& x, cons
                      escaped(line.label), path, marks);
 }
 
-/// The point of a line that has only one, with its name.
-std::string labelledPoint(const Line& line, const Axis& x, const Axis& y) {
-  const double px = x.at(line.x.front()), py = y.at(line.y.front());
-  const bool left = px > 0.75 * kWidth;
-  return fmt::format("<g class=\"line {}\"><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/></g>\n",
-                     seriesClass(line.style), px, py) +
-         text(left ? px - 7 : px + 7, py + 4, left ? "end" : "start", line.label);
+/// Finds a free place for the name of a point: beside it, else further up, down or away, with a line to it.
+class Labels {
+ public:
+  std::string place(double px, double py, const std::string& label) {
+    const double width = 6.8 * static_cast<double>(label.size());
+    const bool left = px + 9 + width > kWidth - kRight;
+    for (int step = 0; step < 24; ++step)
+      for (const double away : {9.0, 100.0, 190.0, 280.0}) {
+        const double shift = kRow * ((step + 1) / 2) * (step % 2 ? -1 : 1), from = left ? px - away - width : px + away;
+        const Box box{from, py + shift - 0.5 * kRow, from + width, py + shift + 0.5 * kRow};
+        if (!isFree(box)) continue;
+        taken_.push_back(box);
+        const std::string line =
+            step > 0 || away > 10 ? rule(px, py, left ? box.x1 + 2 : box.x0 - 2, py + shift, "grid") : "";
+        return line + text(left ? box.x1 : box.x0, py + shift + 4, left ? "end" : "start", label);
+      }
+    return text(px + 9, py + 4, "start", label);
+  }
+  /// Keeps names off a point.
+  void avoid(double px, double py) { taken_.push_back({px - 4, py - 4, px + 4, py + 4}); }
+
+ private:
+  static constexpr double kRow = 13;
+  struct Box {
+    double x0, y0, x1, y1;
+  };
+  bool isFree(const Box& b) const {
+    if (b.x0 < kLeft || b.x1 > kWidth || b.y0 < kTop || b.y1 > kHeight - kBottom) return false;
+    return std::none_of(taken_.begin(), taken_.end(), [&](const Box& t) {
+      return b.x0 < t.x1 && t.x0 < b.x1 && b.y0 < t.y1 - 0.5 && t.y0 < b.y1 - 0.5;
+    });
+  }
+  std::vector<Box> taken_;
+};
+
+/// Lines of one point each, with their names.
+std::string labelledPoints(const LinePlot& plot, const Axis& x, const Axis& y) {
+  std::string svg, points;
+  Labels labels;
+  for (const Line& line : plot.lines) {
+    if (!drawable(plot, line, 0)) continue;
+    const double px = x.at(line.x.front()), py = y.at(line.y.front());
+    labels.avoid(px, py);
+    points += fmt::format("<g class=\"line {}\"><circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"4\"/></g>\n",
+                          seriesClass(line.style), px, py);
+  }
+  for (const Line& line : plot.lines)
+    if (drawable(plot, line, 0)) svg += labels.place(x.at(line.x.front()), y.at(line.y.front()), line.label);
+  return svg + points;
 }
 
 std::string frameOf(const LinePlot& plot, const Axis& x, const Axis& y) {
@@ -150,8 +192,8 @@ std::string svgLinePlot(const LinePlot& plot) {
   const Axis x(xs.low, xs.high, kLeft, kWidth - kRight, plot.logarithmicX);
   const Axis y(ys.low, ys.high, kHeight - kBottom, kTop, plot.logarithmic);
   std::string svg = open(kWidth, kHeight, plot.title + ": " + plot.yLabel) + frameOf(plot, x, y);
-  for (const Line& line : plot.lines)
-    svg += plot.labelled && drawable(plot, line, 0) ? labelledPoint(line, x, y) : polyline(plot, line, x, y);
+  if (plot.labelled) return svg + labelledPoints(plot, x, y) + "</svg>\n";
+  for (const Line& line : plot.lines) svg += polyline(plot, line, x, y);
   return svg + "</svg>\n";
 }
 

@@ -7,15 +7,7 @@
 #include <chrono>
 #include <thread>
 
-#ifndef TWOFOLD_VERSION
-#define TWOFOLD_VERSION "unknown"
-#endif
-#ifndef TWOFOLD_COMMIT
-#define TWOFOLD_COMMIT "unknown"
-#endif
-#ifndef TWOFOLD_BUILD
-#define TWOFOLD_BUILD "unknown"
-#endif
+#include "experiments/commit.h"  // made by the build
 
 namespace experiments {
 
