@@ -99,8 +99,8 @@ class Labels {
   std::string place(double px, double py, const std::string& label) {
     const double width = 6.8 * static_cast<double>(label.size());
     const bool left = px + 9 + width > kWidth - kRight;
-    for (int step = 0; step < 24; ++step)
-      for (const double away : {9.0, 100.0, 190.0, 280.0}) {
+    for (const double away : {9.0, 90.0, 180.0, 270.0})
+      for (int step = 0; step < 24; ++step) {
         const double shift = kRow * ((step + 1) / 2) * (step % 2 ? -1 : 1), from = left ? px - away - width : px + away;
         const Box box{from, py + shift - 0.5 * kRow, from + width, py + shift + 0.5 * kRow};
         if (!isFree(box)) continue;
