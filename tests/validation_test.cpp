@@ -84,7 +84,7 @@ TEST(Evidence, SolvesOverTheCubeAndNotByClamping) {
     const auto one = [](float v) { return static_cast<double>(std::clamp(v, 0.0f, 1.0f)); };
     clampedIsWorse += squaredError(e, {one(truth[0]), one(truth[1]), one(truth[2])}) > got + 1e-3 * std::abs(got);
   }
-  EXPECT_GT(clampedIsWorse, 50);  // control: the unconstrained least, clamped, is not it
+  EXPECT_GT(clampedIsWorse, 50);  // control: the unconstrained least (nearly the truth), clamped, is not it
 }
 
 TEST(Evidence, BelievesTheBlendUntilThereIsSome) {
@@ -182,8 +182,11 @@ TEST(Correction, HalvesTheErrorOfMovingLightAndNeedsItsCheck) {
   EXPECT_GT(labRatio("shared-constant-moving", kUncheckedDebiased, "full"), 1.2);  // control
 }
 
-// Where no samples arrive a lag goes stale; believed for ever it cost 3 % of this case's full frame.
+// Where no samples arrive a lag goes stale. The check cannot know: nothing arrives there. Believed for ever, the lag
+// costs the unchecked blend 5 % here, so that is where the bound bites.
 TEST(Correction, DoesNotOutliveItsEvidence) {
+  for (const char* region : {"full", "periphery"})
+    EXPECT_LT(labRatio("fovea4-0-spot", kUncheckedDebiased, region), 1.02) << region;
   EXPECT_LT(labRatio("fovea4-0-spot", "lag-debiased", "full"), 1.02);
   EXPECT_LT(labRatio("fovea4-0-spot", "lag-debiased", "periphery"), 1.02);
 }
