@@ -128,6 +128,7 @@ std::array<Real, K> solvePositive(const Matrix<K, Real>& m, const std::array<Rea
   return x;
 }
 
+/// x with (m + ridge) x = 1, otherwise the same.
 template <int K, class Real>
 std::array<Real, K> solveOnes(const Matrix<K, Real>& m, Real ridge) {
   std::array<Real, K> ones;

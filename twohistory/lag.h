@@ -68,7 +68,7 @@ WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, c
   return e;
 }
 
-/// [blend lag] with M = kappa C + rho b b', rho the share of b that nothing takes away afterwards. A slower history may
+/// [blend lag] with M = kappa C + rho b b', rho the share of b b' that nothing takes away later. A slower history may
 /// get a negative weight, down to `lowest`, in proportion to the evidence of its bias (b_j^2 over its variance, at most
 /// 1); the reference never.
 template <int K>
