@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr int kFloat = 5126, kUnsignedInt = 5125;
+constexpr int kFloatType = 5126, kUnsignedIntType = 5125;
 constexpr int kVertices = 34962, kIndices = 34963;  // targets of buffer views
 const char* const kLights = "KHR_lights_punctual";
 const char* const kStrength = "KHR_materials_emissive_strength";
@@ -147,12 +147,12 @@ class Writer {
   void addMesh(const Mesh& mesh) {
     if (mesh.triangles.empty() || mesh.positions.empty())
       throw Error("mesh '" + mesh.name + "'", "has no triangles, which glTF cannot hold", "leave it out");
-    const int positions = addAccessor(mesh.positions, "VEC3", kFloat, kVertices);
+    const int positions = addAccessor(mesh.positions, "VEC3", kFloatType, kVertices);
     setBounds(positions, mesh.positions);
     Json attributes{{"POSITION", positions}};
-    if (!mesh.normals.empty()) attributes["NORMAL"] = addAccessor(mesh.normals, "VEC3", kFloat, kVertices);
-    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(mesh.uvs, "VEC2", kFloat, kVertices);
-    const int indices = addAccessor(mesh.triangles, "SCALAR", kUnsignedInt, kIndices);
+    if (!mesh.normals.empty()) attributes["NORMAL"] = addAccessor(mesh.normals, "VEC3", kFloatType, kVertices);
+    if (!mesh.uvs.empty()) attributes["TEXCOORD_0"] = addAccessor(mesh.uvs, "VEC2", kFloatType, kVertices);
+    const int indices = addAccessor(mesh.triangles, "SCALAR", kUnsignedIntType, kIndices);
     root_["accessors"][indices]["count"] = 3 * mesh.triangles.size();
     Json json{{"primitives", {{{"attributes", attributes}, {"indices", indices}, {"material", mesh.material}}}}};
     if (!mesh.name.empty()) json["name"] = mesh.name;
@@ -253,8 +253,8 @@ class Writer {
     if (track.empty()) return;
     const int output =
         path == std::string("rotation")
-            ? addAccessor(track.values, "VEC4", kFloat, 0)
-            : addAccessor(std::vector<vec3>(track.values.begin(), track.values.end()), "VEC3", kFloat, 0);
+            ? addAccessor(track.values, "VEC4", kFloatType, 0)
+            : addAccessor(std::vector<vec3>(track.values.begin(), track.values.end()), "VEC3", kFloatType, 0);
     animation["channels"].push_back(
         {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
     animation["samplers"].push_back(
@@ -265,7 +265,7 @@ class Writer {
   int timesOf(const std::vector<float>& times) {
     const auto [place, isNew] = times_.emplace(times, 0);
     if (!isNew) return place->second;
-    place->second = addAccessor(times, "SCALAR", kFloat, 0);
+    place->second = addAccessor(times, "SCALAR", kFloatType, 0);
     root_["accessors"][place->second]["min"] = {times.front()};
     root_["accessors"][place->second]["max"] = {times.back()};
     return place->second;

@@ -20,7 +20,6 @@ namespace fs = std::filesystem;
 using tinygltf::Model;
 using tinygltf::Value;
 
-const char* const kRepair = "repair the file or export it again";
 const char* const kLightExtension = "KHR_lights_punctual";
 
 /// Keeps an image's encoded bytes. Those in a buffer view may lie outside the buffer: they are not touched here.

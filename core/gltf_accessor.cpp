@@ -6,13 +6,12 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/gltf_support.h"
 
 namespace core {
 namespace {
 
 constexpr std::uint64_t kMaxZeros = std::uint64_t{1} << 24;  // numbers in an accessor that no byte of the file backs
-const char* const kRepair = "repair the file or export it again";
-
 enum ComponentType { kByte = 5120, kUnsignedByte, kShort, kUnsignedShort, kUnsignedInt = 5125, kFloat };
 
 std::uint64_t componentSize(const AccessorView& view) {

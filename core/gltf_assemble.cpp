@@ -10,8 +10,6 @@
 namespace core {
 namespace {
 
-const char* const kRepair = "repair the file or export it again";
-
 template <class T>
 const T& at(const std::vector<T>& list, int index, const char* what, const GltfFile& file) {
   if (index < 0 || static_cast<std::size_t>(index) >= list.size())

@@ -4,11 +4,10 @@
 #include <queue>
 
 #include "core/check.h"
+#include "core/gltf_support.h"
 
 namespace core {
 namespace {
-
-const char* const kRepair = "repair the file or export it again";
 
 void checkNode(int node, std::size_t count, const std::string& where) {
   if (node < 0 || static_cast<std::size_t>(node) >= count)

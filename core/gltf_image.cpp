@@ -7,7 +7,7 @@
 namespace core {
 namespace {
 
-constexpr std::uint64_t kMaxPixels = std::uint64_t{1} << 26;
+constexpr std::uint64_t kMostTexels = std::uint64_t{1} << 26;
 constexpr unsigned char kPng[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr unsigned char kJpeg[] = {0xff, 0xd8, 0xff};
 
@@ -27,7 +27,7 @@ void checkImage(std::span<const unsigned char> bytes, const std::string& where) 
   const bool png = startsWith(bytes, kPng);
   if (!png && !startsWith(bytes, kJpeg)) throw Error(where, "is neither PNG nor JPEG", "convert it");
   if (bytes.size() < 24 || bytes.size() > 0x7fffffff) throw Error(where, "is no whole image", "export it again");
-  if (png && headerWord(bytes, 16) * headerWord(bytes, 20) > kMaxPixels)
+  if (png && headerWord(bytes, 16) * headerWord(bytes, 20) > kMostTexels)
     throw Error(where, "has more than 2^26 pixels", "scale it down");
 }
 

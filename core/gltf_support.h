@@ -10,6 +10,9 @@
 
 namespace core {
 
+/// What to do about most of what can be wrong with a file.
+inline constexpr const char* kRepair = "repair the file or export it again";
+
 /// A parser's complaint as one line.
 Error unreadable(const std::string& where, std::string complaint);
 
@@ -19,7 +22,7 @@ float inRange(double value, double low, double high, const std::string& where);
 /// The first N numbers as a vector. Throws Error naming `where` for fewer, or for one out of range.
 template <int N>
 glm::vec<N, float> toVec(const std::vector<double>& numbers, double low, double high, const std::string& where) {
-  if (numbers.size() < N) throw Error(where, "has a vector of too few numbers", "repair the file or export it again");
+  if (numbers.size() < N) throw Error(where, "has a vector of too few numbers", kRepair);
   glm::vec<N, float> v;
   for (int i = 0; i < N; ++i) v[i] = inRange(numbers[i], low, high, where);
   return v;

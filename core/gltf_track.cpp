@@ -1,11 +1,10 @@
 #include "core/gltf_track.h"
 
 #include "core/check.h"
+#include "core/gltf_support.h"
 
 namespace core {
 namespace {
-
-const char* const kRepair = "repair the file or export it again";
 
 void checkTimes(const std::vector<float>& times, const std::string& where) {
   bool valid = !times.empty() && isFinite(times.front()) && isFinite(times.back()) && times.front() >= 0;

@@ -1,11 +1,10 @@
 #include "core/gltf_triangles.h"
 
 #include "core/check.h"
+#include "core/gltf_support.h"
 
 namespace core {
 namespace {
-
-const char* const kRepair = "repair the file or export it again";
 
 void checkIndices(const std::vector<std::uint32_t>& indices, std::size_t vertexCount, const std::string& where) {
   for (std::uint32_t index : indices)

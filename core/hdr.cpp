@@ -12,9 +12,9 @@
 namespace core {
 namespace {
 
-constexpr std::int64_t kMaxExtent = 1 << 17;                // on a side, as for OpenEXR
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 27;  // 1.5 GiB as float RGB
-constexpr int kLeastRun = 8, kMostRun = 32767;              // widths that the new encoding can have
+constexpr std::int64_t kMaxExtent = 1 << 17;                 // on a side, as for OpenEXR
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 27;  // 1.5 GiB as float RGB
+constexpr int kLeastRun = 8, kMostRun = 32767;               // widths that the new encoding can have
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
@@ -97,7 +97,7 @@ class HdrReader {
     words >> y >> height >> x >> width;
     if (!words || (y != "-Y" && y != "+Y") || (x != "-X" && x != "+X"))
       fail("'" + shown(text) + "' is no size such as '-Y 512 +X 1024'");
-    if (width < 1 || height < 1 || width > kMaxExtent || height > kMaxExtent || width * height > kMaxPixels)
+    if (width < 1 || height < 1 || width > kMaxExtent || height > kMaxExtent || width * height > kMostPixels)
       fail("it claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels, 1 to 2^27 are allowed");
     header.width = static_cast<int>(width), header.height = static_cast<int>(height);
     header.fromBottom = y == "+Y", header.fromRight = x == "-X";

@@ -20,6 +20,8 @@ using glm::vec4;
 
 inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Of statistics: there was nothing to measure.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Relative luminance of linear Rec. 709 radiance.
 inline float luminance(const vec3& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }

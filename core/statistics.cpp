@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "core/check.h"
+#include "core/maths.h"
 
 namespace core {
 
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// P(N > x), accurate in the upper tail.
 double normalUpperTail(double x) { return 0.5 * std::erfc(x / std::sqrt(2.0)); }

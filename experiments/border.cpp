@@ -1,15 +1,14 @@
 #include "experiments/border.h"
 
 #include <cmath>
-#include <limits>
 #include <map>
 
+#include "core/maths.h"
 #include "core/parallel.h"
 
 namespace experiments {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint8_t kFar = 0, kInside = 1, kOutside = 2;
 
 /// Whether a pixel of the other kind lies within the band.
@@ -80,10 +79,10 @@ void BorderStep::add(core::In<float> image, const std::array<core::In<float>, 2>
     for (int x = 0; x < image.width; x += kCell) addCell(image, truth, side, floor, x, y);
 }
 
-double BorderStep::meanSquare() const { return cells_ > 0 ? sum_ / static_cast<double>(cells_) : kNaN; }
+double BorderStep::meanSquare() const { return cells_ > 0 ? sum_ / static_cast<double>(cells_) : core::kNaN; }
 
 double BorderStep::noiseRatio() const {
-  return noisy_ > 0 ? std::exp(0.5 * logRatio_ / static_cast<double>(noisy_)) : kNaN;
+  return noisy_ > 0 ? std::exp(0.5 * logRatio_ / static_cast<double>(noisy_)) : core::kNaN;
 }
 
 namespace {
@@ -111,7 +110,7 @@ double meanPairProduct(const std::vector<const Contrasts*>& sequences, std::size
 
 std::vector<double> systematicContrast2(const std::vector<const Contrasts*>& sequences) {
   const std::size_t n = sequences.size();
-  std::vector<double> values(n, kNaN);
+  std::vector<double> values(n, core::kNaN);
   if (n < 3 || sequences.front()->empty()) return values;
   for (const Contrasts* c : sequences)
     if (c->size() != sequences.front()->size()) return values;

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "core/maths.h"
 #include "core/parallel.h"
 
 namespace experiments {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRelativeFloor = 0.01;  ///< added to r^2; the slides' protocol
 constexpr double kTrimmed = 0.001;       ///< share of pixels left out of the trimmed mean
 constexpr std::array kLuminance{0.2126, 0.7152, 0.0722};
@@ -22,7 +21,7 @@ constexpr std::array kLuminance{0.2126, 0.7152, 0.0722};
 template <class Value>
 double meanOver(const std::vector<std::int64_t>& indices, Value&& value) {
   const auto count = static_cast<std::int64_t>(indices.size());
-  if (count == 0) return kNaN;
+  if (count == 0) return core::kNaN;
   return core::deterministicSum(count, [&](std::int64_t i) { return value(indices[i]); }) / static_cast<double>(count);
 }
 
@@ -53,7 +52,7 @@ void requireFinite(const Colour& image, const std::string& name) {
 }
 
 double trimmedMean(std::vector<double> values, double fraction) {
-  if (values.empty()) return kNaN;
+  if (values.empty()) return core::kNaN;
   const double share = std::ceil(fraction * static_cast<double>(values.size()) - 1e-9);
   const std::size_t kept = values.size() - std::min(values.size() - 1, static_cast<std::size_t>(std::max(0.0, share)));
   if (kept < values.size()) std::nth_element(values.begin(), values.begin() + kept, values.end());
@@ -118,7 +117,7 @@ Metrics Comparison::in(const Mask& region) const {
     return meanOver(indices, [&](std::int64_t i) { return pixels[i].*member; });
   };
   std::vector<double> relative;
-  double largest = indices.empty() ? kNaN : 0;
+  double largest = indices.empty() ? core::kNaN : 0;
   for (const std::int64_t i : indices) {
     relative.push_back(pixels[i].relative);
     largest = std::max(largest, pixels[i].largest);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <sstream>
 
+#include "core/maths.h"
 #include "experiments/json_text.h"
 #include "twohistory/combination.h"
 
@@ -15,14 +15,13 @@ using twohistory::Weighting;
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFewest = 1e-6, kMost = 1e9;  ///< samples in one frame, beyond 0
 
 constexpr int kFrames = 0, kSamples = 1;  ///< histories of the pair
 int historyOf(Weighting w) { return w == Weighting::frames ? kFrames : kSamples; }
 
 double parseCount(const std::string& word, const std::string& where) {
-  double n = kNaN;
+  double n = core::kNaN;
   std::size_t used = 0;
   try {
     n = std::stod(word, &used);
@@ -68,18 +67,18 @@ bool Prediction::known() const {
   return ledger_.covariance(kFrames, kFrames) > 0 && ledger_.covariance(kSamples, kSamples) > 0;
 }
 
-double Prediction::age(Weighting w) const { return weight(w) > 0 ? ledger_.age(historyOf(w)) : kNaN; }
+double Prediction::age(Weighting w) const { return weight(w) > 0 ? ledger_.age(historyOf(w)) : core::kNaN; }
 
 double Prediction::blendWeight() const {
-  return known() ? twohistory::leastVarianceWeight(twohistory::pairOf(ledger_, kFrames, kSamples)) : kNaN;
+  return known() ? twohistory::leastVarianceWeight(twohistory::pairOf(ledger_, kFrames, kSamples)) : core::kNaN;
 }
 
 double Prediction::variance(Weighting w) const {
-  return known() ? ledger_.covariance(historyOf(w), historyOf(w)) : kNaN;
+  return known() ? ledger_.covariance(historyOf(w), historyOf(w)) : core::kNaN;
 }
 
 double Prediction::blendVariance() const {
-  return known() ? twohistory::pairOf(ledger_, kFrames, kSamples).blend(blendWeight()) : kNaN;
+  return known() ? twohistory::pairOf(ledger_, kFrames, kSamples).blend(blendWeight()) : core::kNaN;
 }
 
 Json predictionJson(const Prediction& p, double n) {

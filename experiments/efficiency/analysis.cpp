@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <tuple>
 
+#include "core/maths.h"
 #include "experiments/efficiency/measure.h"
 #include "experiments/json_text.h"
 #include "experiments/names.h"
@@ -16,8 +16,6 @@
 
 namespace experiments::efficiency {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// Values of rows by scene, method at a count, seed and metric.
 class Table {
@@ -32,7 +30,7 @@ class Table {
   const std::set<std::uint64_t>& seeds() const { return seeds_; }
   double at(const std::string& scene, const std::string& label, std::uint64_t seed, const std::string& metric) const {
     const auto found = values_.find({scene, label, seed, metric});
-    return found == values_.end() ? kNaN : found->second;
+    return found == values_.end() ? core::kNaN : found->second;
   }
   CurvePoint point(const std::string& scene, const Method& m, int count, std::uint64_t seed,
                    const std::string& metric) const {
@@ -129,7 +127,7 @@ class SceneAnalysis {
 std::vector<ByLights> byLights(const std::vector<EqualError>& equal) {
   std::vector<ByLights> all;
   for (const char* metric : kErrors) {
-    ByLights lights{metric, {}, kNaN};
+    ByLights lights{metric, {}, core::kNaN};
     for (const EqualError& e : equal)
       if (const int n = lampsIn(e.scene); n > 0 && e.best && e.metric == metric) lights.best.emplace_back(n, e);
     std::sort(lights.best.begin(), lights.best.end(), [](const auto& a, const auto& b) { return a.first < b.first; });

@@ -1,4 +1,5 @@
 #include "experiments/efficiency/equal_error.h"
+#include "core/maths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +8,7 @@
 namespace experiments::efficiency {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-9;  ///< relative difference below which two errors are the same
 
 bool usable(const CurvePoint& p) {
@@ -54,7 +55,7 @@ double extrapolated(const std::vector<CurvePoint>& points, double error) {
 
 EqualTime timeToError(const std::vector<CurvePoint>& curve, double error, bool independent) {
   const std::vector<CurvePoint> points = usablePoints(curve);
-  if (points.empty() || !(error > 0)) return {kNaN, Reach::atLeast};
+  if (points.empty() || !(error > 0)) return {core::kNaN, Reach::atLeast};
   const CurvePoint& first = points.front();
   if (first.error <= error * (1 + kRounding))
     return {first.milliseconds, first.error >= error * (1 - kRounding) ? Reach::measured : Reach::atMost};
@@ -65,7 +66,7 @@ EqualTime timeToError(const std::vector<CurvePoint>& curve, double error, bool i
 
 double slopeInCount(const std::vector<CurvePoint>& curve) {
   const std::vector<CurvePoint> points = usablePoints(curve);
-  if (points.size() < 2) return kNaN;
+  if (points.size() < 2) return core::kNaN;
   const auto size = static_cast<double>(points.size());
   double meanX = 0, meanY = 0, xx = 0, xy = 0;
   for (const CurvePoint& p : points) meanX += std::log(p.count) / size, meanY += std::log(p.error) / size;
@@ -73,17 +74,17 @@ double slopeInCount(const std::vector<CurvePoint>& curve) {
     const double x = std::log(p.count) - meanX;
     xx += x * x, xy += x * (std::log(p.error) - meanY);
   }
-  return xx > 0 ? xy / xx : kNaN;
+  return xx > 0 ? xy / xx : core::kNaN;
 }
 
 double riseAboveOne(const std::vector<std::pair<double, double>>& ratios) {
   for (std::size_t i = ratios.size(); i-- > 1;) {
     const auto& [x0, r0] = ratios[i - 1];
     const auto& [x1, r1] = ratios[i];
-    if (r1 < 1) return kNaN;
+    if (r1 < 1) return core::kNaN;
     if (r0 < 1) return between(r0, x0, r1, x1, 1);
   }
-  return kNaN;
+  return core::kNaN;
 }
 
 }  // namespace experiments::efficiency

@@ -1,15 +1,10 @@
 #include "experiments/lab/measure.h"
 
-#include <limits>
-
+#include "core/maths.h"
 #include "core/parallel.h"
 
 namespace experiments::lab {
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 void Measure::add(core::PlanesView<const float> image, core::PlanesView<const float> truth,
                   const FovealMemory& memory) {
@@ -34,7 +29,7 @@ void Measure::add(core::PlanesView<const float> image, core::PlanesView<const fl
 
 double Measure::squaredError(Region region) const {
   const auto r = static_cast<std::size_t>(region);
-  return pixels_[r] > 0 ? sums_[r] / static_cast<double>(pixels_[r]) : kNaN;
+  return pixels_[r] > 0 ? sums_[r] / static_cast<double>(pixels_[r]) : core::kNaN;
 }
 
 }  // namespace experiments::lab

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <tuple>
 
+#include "core/maths.h"
 #include "experiments/markup.h"
 #include "experiments/names.h"
 #include "experiments/plot.h"
@@ -15,7 +15,6 @@
 namespace experiments::lab {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kSeed = "seed";
 
 /// One metric of one region over the baseline's, by case and variant.
@@ -36,7 +35,7 @@ class Ratios {
   core::Interval at(const std::string& c, const std::string& variant) const {
     if (variant == baseline_) return {1, 1, 1};
     const auto found = values_.find({c, variant});
-    return found == values_.end() ? core::Interval{kNaN, kNaN, kNaN} : found->second;
+    return found == values_.end() ? core::Interval{core::kNaN, core::kNaN, core::kNaN} : found->second;
   }
   /// Geometric mean over the cases that have a value; NaN if none has.
   double mean(const std::string& variant) const {
