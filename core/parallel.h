@@ -16,33 +16,36 @@ namespace core {
 /// Pixels on a tile's side; results never depend on it. 16 keeps a tile's surfaces in the second-level cache.
 inline constexpr int kDefaultTile = 16;
 
-/// Calls body(x, y) once for every pixel, tile by tile. body must only write what belongs to (x, y).
+/// Calls body(x0, y0, x1, y1) once for every block [x0, x1) x [y0, y1) of at most the given size.
 template <class Body>
-void forEachPixel(int width, int height, Body&& body, int tile = kDefaultTile) {
-  const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
+void forEachBlock(int width, int height, int blockWidth, int blockHeight, Body&& body) {
+  const int columns = (width + blockWidth - 1) / blockWidth, rows = (height + blockHeight - 1) / blockHeight;
   const LoopOrder loop;
   tbb::parallel_for(tbb::blocked_range<int>(0, columns * rows, 1), [&](const tbb::blocked_range<int>& range) {
     const BodyOrder order;
     for (int t = range.begin(); t != range.end(); ++t) {
-      const int x0 = (t % columns) * tile, y0 = (t / columns) * tile;
-      for (int y = y0; y < std::min(y0 + tile, height); ++y)
-        for (int x = x0; x < std::min(x0 + tile, width); ++x) body(x, y);
+      const int x0 = (t % columns) * blockWidth, y0 = (t / columns) * blockHeight;
+      body(x0, y0, std::min(x0 + blockWidth, width), std::min(y0 + blockHeight, height));
     }
   });
 }
 
-/// Calls body(x0, y0, x1, y1) once for every tile [x0, x1) x [y0, y1).
+/// The same for square tiles.
 template <class Body>
 void forEachTile(int width, int height, Body&& body, int tile = kDefaultTile) {
-  const int columns = (width + tile - 1) / tile, rows = (height + tile - 1) / tile;
-  const LoopOrder loop;
-  tbb::parallel_for(tbb::blocked_range<int>(0, columns * rows, 1), [&](const tbb::blocked_range<int>& range) {
-    const BodyOrder order;
-    for (int t = range.begin(); t != range.end(); ++t) {
-      const int x0 = (t % columns) * tile, y0 = (t / columns) * tile;
-      body(x0, y0, std::min(x0 + tile, width), std::min(y0 + tile, height));
-    }
-  });
+  forEachBlock(width, height, tile, tile, body);
+}
+
+/// Calls body(x, y) once for every pixel, tile by tile. body must only write what belongs to (x, y).
+template <class Body>
+void forEachPixel(int width, int height, Body&& body, int tile = kDefaultTile) {
+  forEachTile(
+      width, height,
+      [&](int x0, int y0, int x1, int y1) {
+        for (int y = y0; y < y1; ++y)
+          for (int x = x0; x < x1; ++x) body(x, y);
+      },
+      tile);
 }
 
 /// Calls body(i) once for every i in [0, count), at least grain of them in a row on one thread.

@@ -123,9 +123,9 @@ struct LevelBuffers {
   Image<float> luminance, tolerance;
 
   /// Images that are free until filterFurther runs.
-  std::array<ImageView<float>, 4> free() {
+  std::array<ImageView<float>, 5> free() {
     const PlanesView<float> planes = colour[1];
-    return {planes.plane[0], planes.plane[1], planes.plane[2], luminance};
+    return {planes.plane[0], planes.plane[1], planes.plane[2], luminance, tolerance};
   }
   std::size_t bytes() const {
     return colour[0].bytes() + colour[1].bytes() + variance[0].bytes() + variance[1].bytes() + luminance.bytes() +

@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "twohistory/combination.h"
 #include "twohistory/lag.h"
+#include "twohistory/trend.h"
 
 namespace twohistory {
 namespace {
@@ -148,10 +149,12 @@ Weights<K> pairWeightsByDrift(const Ledger<K>& ledger, const BlendParameters& p,
 }
 
 template <int K>
-Proposal<K> proposalByDrift(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i) {
+Proposal<K> proposalByDrift(const Ledger<K>& ledger, const BlendParameters& p, const DriftRow& row, int i,
+                            const Trends& trend) {
   if (p.mode != BlendMode::lagAll) return {pairWeightsByDrift<K>(ledger, p, row, i)};
   const Against<K> against(p.pair[1]);
-  const WindowEvidence<K> seen = windowEvidence(ledger, against, row, i, p.noise == NoiseEstimate::safe);
+  const bool measured = p.noise == NoiseEstimate::safe;
+  const WindowEvidence<K> seen = windowEvidence(ledger, against, row, i, measured, trend);
   const float c = p.correction, rho = (1 - c) * (1 - c) + c * c * p.lagError * p.lagError;  // [blend rho]
   Proposal<K> proposal{lagWeights(ledger, against, seen, rho, p.lowest)};
   const float unit = std::sqrt(row.meanSampleVariance(i)) * seen.fresh;
@@ -159,18 +162,26 @@ Proposal<K> proposalByDrift(const Ledger<K>& ledger, const BlendParameters& p, c
   return proposal;
 }
 
-/// Fills the planes that sumDrift averages: lum(X_j - X_k) and its noise. Both are 0 for twins.
+/// Fills the planes that windows average: lum(X_j - X_k) and its noise, both 0 for twins, and lum(X_0) if j is 0. Adds
+/// up the trend of difference `index`.
 template <int K>
-void prepareDifference(const Histories<K>& h, const TwinTiles* twins, int j, int k, core::ImageView<float> value,
-                       core::ImageView<float> noise) {
+void prepareDifference(const Histories<K>& h, const TwinTiles* twins, int index, int j, int k,
+                       const BlendScratch& scratch, Trend& trend) {
+  const core::ImageView<float> value = scratch[2 * index], noise = scratch[2 * index + 1], brightness = scratch.back();
   core::forEachTile(
       value.width, value.height,
       [&](int x0, int y0, int x1, int y1) {
         const bool same = twins && twins->at(x0, y0);
+        Trend::Sums& sums = trend.tile(x0, y0)[index];
         for (int y = y0; y < y1; ++y)
           for (int x = x0; x < x1; ++x) {
-            value(x, y) = same ? 0 : luminance(h.colour[j].fromBase(x, y) - h.colour[k].fromBase(x, y));
-            noise(x, y) = same ? 0 : h.sampleVariance(x, y) * pairOf<K, float>(h.ledger(x, y), j, k).difference();
+            if (index == 0) brightness(x, y) = luminance(h.colour[0].load(x, y));
+            value(x, y) = noise(x, y) = 0;
+            if (same) continue;
+            const Ledger<K> ledger = h.ledger(x, y);
+            value(x, y) = luminance(h.colour[j].fromBase(x, y) - h.colour[k].fromBase(x, y));
+            noise(x, y) = h.sampleVariance(x, y) * pairOf<K, float>(ledger, j, k).difference();
+            sums.add(value(x, y), ledger.age(j) - ledger.age(k), brightness(x, y));
           }
       },
       TwinTiles::kSide);
@@ -183,34 +194,44 @@ const TwinTiles* usefulTwins(const TwinTiles* twins, const BlendParameters& p) {
   return known && p.pair[0] == 0 && !p.validation.on ? twins : nullptr;
 }
 
+/// Blends pixels [x0, x1) of a row. block: window sums, of more than the twins among them.
+template <int K>
+void blendRow(const Histories<K>& h, const BlendParameters& p, const TwinTiles* twins, const DriftBlock& block,
+              const Trend& trend, int y, int x0, int x1, const Sink<K>& sink) {
+  int begin = x0, end = x1;
+  if (twins) twins->narrow(y, p.radius, begin, end);
+  for (int x = x0; x < begin; ++x) sink.writeTwin(x, y);
+  for (int x = std::max(begin, end); x < x1; ++x) sink.writeTwin(x, y);
+  if (begin >= end) return;
+  DriftRow row;
+  block.sumWindows(y, begin, end, row);
+  for (int x = begin; x < end; ++x) {
+    const Ledger<K> ledger = h.ledger(x, y);
+    sink.write(x, y, ledger, proposalByDrift(ledger, p, row, x - begin, trend.at(x, y)));
+  }
+}
+
 /// lagAll compares every history with the freshest, the others their pair.
 template <int K>
 void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, const TwinTiles* twins,
                   const BlendScratch& scratch, const Sink<K>& sink) {
   const bool all = p.mode == BlendMode::lagAll;
   const Against<K> against(p.pair[1]);
-  const int count = all ? K - 1 : 1;
-  std::array<Difference, DriftRow::kMost> differences;
-  for (int k = 0; k < count; ++k) {
-    prepareDifference(h, twins, all ? against.of[k] : p.pair[0], p.pair[1], scratch[2 * k], scratch[2 * k + 1]);
-    differences[k] = {scratch[2 * k], scratch[2 * k + 1]};
+  DriftSource source{guide, p.edges, p.radius, h.sampleVariance, scratch.back(), all ? K - 1 : 1, {}};
+  Trend trend(guide.width(), guide.height());
+  for (int k = 0; k < source.count; ++k) {
+    prepareDifference(h, twins, k, all ? against.of[k] : p.pair[0], p.pair[1], scratch, trend);
+    source.differences[k] = {scratch[2 * k], scratch[2 * k + 1]};
   }
-  core::forEachRow(guide.height(), [&](int y) {
-    DriftRow row;
-    for (int x0 = 0; x0 < guide.width(); x0 += core::kBlock) {
-      const int x1 = std::min(x0 + core::kBlock, guide.width());
-      int begin = x0, end = x1;
-      if (twins) twins->narrow(y, p.radius, begin, end);
-      for (int x = x0; x < begin; ++x) sink.writeTwin(x, y);
-      for (int x = std::max(begin, end); x < x1; ++x) sink.writeTwin(x, y);
-      if (begin >= end) continue;
-      sumDrift(guide, p.edges, differences.data(), count, h.sampleVariance, p.radius, y, begin, end, row);
-      for (int x = begin; x < end; ++x) {
-        const Ledger<K> ledger = h.ledger(x, y);
-        sink.write(x, y, ledger, proposalByDrift(ledger, p, row, x - begin));
-      }
-    }
-  });
+  if (all && p.trend) trend.solve();
+  const int reach = p.radius;
+  core::forEachBlock(guide.width(), guide.height(), DriftBlock::kWidth, DriftBlock::kHeight,
+                     [&](int x0, int y0, int x1, int y1) {
+                       DriftBlock block(source);
+                       if (!twins || !twins->all(x0 - reach, y0 - reach, x1 + reach, y1 + reach))
+                         block.sumRows(x0, x1, y0, y1);
+                       for (int y = y0; y < y1; ++y) blendRow(h, p, twins, block, trend, y, x0, x1, sink);
+                     });
 }
 
 /// Blends that look at one pixel at a time.

@@ -57,6 +57,8 @@ struct BlendParameters {
   float correction = 0;                  ///< c: share of the lag left in `lagAll`'s blend that is taken away, in [0, 1]
   float lagError = 0.5f;                 ///< epsilon: relative standard deviation of that lag's estimate
   int radius = 3;                        ///< of the window that estimates drift, pixels
+  int wide = 0;       ///< radius of a wider window, whose mean the first one's is shrunk towards (lagAll); 0 = none
+  bool trend = true;  ///< lagAll shrinks differences towards those of large areas, not towards 0
   NoiseEstimate noise = NoiseEstimate::predicted;
   core::EdgeParameters edges;
   ValidationParameters validation;
@@ -85,6 +87,7 @@ void describe(V& v, BlendParameters& p) {
   v("correction", p.correction, "share of the lag left in the blend that is taken away (lagAll)", 0.0, 1.0);
   v("lagError", p.lagError, "relative standard deviation of the estimate of that lag", 0.0, 1.0);
   v("radius", p.radius, "radius in pixels of the window that estimates drift", 0.0, 8.0);
+  v("trend", p.trend, "shrink noisy differences towards those of large areas instead of 0 (lagAll)");
   v.choice("noise", p.noise, {{"predicted", NoiseEstimate::predicted}, {"safe", NoiseEstimate::safe}},
            "how the noise of the histories' mean difference is estimated");
   v("validation", p.validation, "check of the blend against samples that it has not seen");
@@ -104,8 +107,8 @@ struct Histories {
 };
 
 /// Planes that the window estimate needs while blend() runs, and nothing keeps: a value and its noise for each of at
-/// most two differences. Any images of the right size that are free will do, but not out or variance.
-using BlendScratch = std::array<core::ImageView<float>, 2 * DriftRow::kMost>;
+/// most two differences, and lum(X_0). Any images of the right size that are free will do, but not out or variance.
+using BlendScratch = std::array<core::ImageView<float>, 2 * DriftRow::kMost + 1>;
 
 /// Where a blend's result goes. weight: p where the blend has one (else 1); may be empty.
 struct Blended {

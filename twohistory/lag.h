@@ -7,6 +7,7 @@
 
 #include "twohistory/combination.h"
 #include "twohistory/drift.h"
+#include "twohistory/trend.h"
 
 namespace twohistory {
 
@@ -37,24 +38,30 @@ struct WindowEvidence {
   float fresh = 1;              ///< how much of the reference's age the gaps span, <= 1: what they say of it
 };
 
+/// [blend D] the window's mean of difference k, with its noise taken off what it differs from `expected` by.
+inline float shrunkMean(const DriftRow& row, int k, int i, bool measuredNoise, float expected) {
+  const float rest = row.mean(k, i) - expected;
+  const float noise2 = measuredNoise ? row.safeNoise(k, i) : row.predictedNoise(k, i);  // [blend noise2]
+  return expected + std::copysign(std::sqrt(std::max(0.0f, rest * rest - noise2)), rest);
+}
+
 /// [blend bias] b_j = D_j + b_r with D_j the mean difference from the reference, shrunk by its noise, and
 /// b_r = G min(a_r, L/2 fresh), fresh = min(1, L / a_r), G the slope of all D_j against the gaps of age, L the longest.
 /// Extrapolating further than ages reach is not supported by what was seen: a pixel without samples grows old without
-/// learning anything.
+/// learning anything. trend: of each difference, what its noise is shrunk towards ([blend trend]); 0 = towards none.
 ///
 /// [blend kappa] kappa = max_j spread_j / (s2 Var(X_j - X_r)): noise that reuse or sharing correlates, so that
 /// histories average less of it away than the power sums say.
 template <int K>
 WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, const DriftRow& row, int i,
-                                 bool measuredNoise) {
+                                 bool measuredNoise, const Trends& trend = {}) {
   WindowEvidence<K> e;
   const float s2 = row.meanSampleVariance(i), deviation = std::sqrt(s2);
   float slope = 0, gaps = 0, longest = 0;
   for (int k = 0; k < K - 1; ++k) {
     const int j = a.of[k];
-    const float d = row.mean(k, i), noise2 = measuredNoise ? row.safeNoise(k, i) : row.predictedNoise(k, i);
-    const float shrunk = std::copysign(std::sqrt(std::max(0.0f, d * d - noise2)), d);  // [blend D], [blend noise2]
     const float gap = ledger.age(j) - ledger.age(a.reference);
+    const float shrunk = shrunkMean(row, k, i, measuredNoise, trend[k] * gap * row.meanBrightness(i));  // [blend trend]
     e.bias[j] = std::copysign(std::min(cappedRatio(std::abs(shrunk), deviation), 1e3f), shrunk);
     slope += e.bias[j] * gap, gaps += gap * gap, longest = std::max(longest, gap);
     const float predicted = s2 * pairOf(ledger, j, a.reference).difference();

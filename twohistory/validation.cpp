@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "twohistory/combination.h"
+#include "twohistory/tile_place.h"
 
 namespace twohistory {
 
@@ -119,8 +120,9 @@ void Validation::fit(int width, int height, const UsualCount& usual) {
 void Validation::solve(const ValidationParameters& p) {
   const int width = keep_.width(), height = keep_.height();
   std::array<Evidence, kRegimes> all;
+  const double share = static_cast<double>(p.shared) / (width * height);
   for (int i = 0; i < width * height; ++i)
-    for (int c = 0; c < kRegimes; ++c) all[c].accumulate(evidence_.data()[i][c], static_cast<double>(p.shared));
+    for (int c = 0; c < kRegimes; ++c) all[c].accumulate(evidence_.data()[i][c], share);
   core::forEachPixel(width, height, [&](int x, int y) {
     for (int c = 0; c < kRegimes; ++c) {
       Evidence sum = all[c];
@@ -132,18 +134,11 @@ void Validation::solve(const ValidationParameters& p) {
 }
 
 Shifts Validation::keep(int x, int y, Regime regime) const {
-  const auto place = [](int i, int tiles, int& first, int& second) {
-    const float t = std::clamp((static_cast<float>(i) + 0.5f) / kTile - 0.5f, 0.0f, static_cast<float>(tiles - 1));
-    first = static_cast<int>(t), second = std::min(first + 1, tiles - 1);
-    return t - static_cast<float>(first);
-  };
-  int i0, i1, j0, j1;
-  const float a = place(x, keep_.width(), i0, i1), b = place(y, keep_.height(), j0, j1);
+  const TilePlace p(x, y, kTile, keep_.width(), keep_.height());
   const auto c = static_cast<std::size_t>(regime);
   Shifts out;
   for (int k = 0; k < kShifts; ++k)
-    out[k] = (1 - b) * ((1 - a) * keep_(i0, j0)[c][k] + a * keep_(i1, j0)[c][k]) +
-             b * ((1 - a) * keep_(i0, j1)[c][k] + a * keep_(i1, j1)[c][k]);
+    out[k] = p.mix(keep_(p.i0, p.j0)[c][k], keep_(p.i1, p.j0)[c][k], keep_(p.i0, p.j1)[c][k], keep_(p.i1, p.j1)[c][k]);
   return out;
 }
 

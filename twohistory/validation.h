@@ -27,8 +27,8 @@ struct ValidationParameters {
   bool on = false;
   float decay = 0.9f;   ///< of the sums, a frame
   float trust = 1;      ///< tau: standard deviation of theta around 1 before any check
-  float proof = 0.1f;   ///< tau_c: the same of the correction's theta, around 0: it must be proven first
-  float shared = 0.1f;  ///< weight of the whole frame's evidence beside a tile's
+  float proof = 0.25f;  ///< tau_c: the same of the correction's theta, around 0: it must be proven first
+  float shared = 1;     ///< how many tiles the whole frame's evidence counts for beside a tile and its neighbours
 };
 
 template <class V>
@@ -37,7 +37,7 @@ void describe(V& v, ValidationParameters& p) {
   v("decay", p.decay, "of the evidence, a frame", 0.0, 1.0);
   v("trust", p.trust, "standard deviation of the factor around 1 before any evidence", 1e-3, 1e3);
   v("proof", p.proof, "standard deviation of the correction's factor around 0 before any evidence", 1e-3, 1e3);
-  v("shared", p.shared, "weight of the whole frame's evidence beside a tile's own", 0.0, 1e6);
+  v("shared", p.shared, "tiles that the whole frame's evidence counts for beside a tile and its neighbours", 0.0, 1e6);
 }
 
 /// How a pixel's count compares with those its history was made of: fewer samples, as many, or more.
