@@ -236,4 +236,24 @@ TEST_F(Cli, ASceneWithoutLightIsBlackWithOneWarning) {
   EXPECT_TRUE(fs::exists(file("out.exr")));
 }
 
+// Parts of an interrupted experiment are named by the executable's content: an edited blend must not find old ones.
+TEST_F(Cli, ARebuiltProgramDoesNotResumeWhatAnotherOneFinished) {
+  const auto countParts = [&] {
+    return std::distance(fs::directory_iterator(file("out/parts")), fs::directory_iterator());
+  };
+  const std::string arguments = "run '" + file("tiny.json") + "' -o '" + file("out") + "'";
+  write("tiny.json", R"({"scenes": ["cornell"], "frames": 2, "width": 16, "height": 16, "seeds": [1],
+    "variants": ["unweighted"], "reference": {"samples": 1, "every": 2}})");
+  ASSERT_EQ(run(arguments).code, 0);
+  ASSERT_EQ(countParts(), 1);
+  EXPECT_EQ(run(arguments).code, 0);
+  EXPECT_EQ(countParts(), 1) << "control: the same program resumes";
+
+  const std::string rebuilt = file("rebuilt");
+  fs::copy_file(TWOFOLD_PROGRAM, rebuilt);
+  std::ofstream(rebuilt, std::ios::app) << "another build";  // which a loader does not look at
+  ASSERT_EQ(std::system(("'" + rebuilt + "' " + arguments + " >/dev/null 2>&1").c_str()), 0);
+  EXPECT_EQ(countParts(), 2);
+}
+
 }  // namespace
