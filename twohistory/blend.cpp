@@ -68,8 +68,8 @@ struct Sink {
     vec3 sum = base + q * base;  // weights have sum 1, and differences are what is stored
     for (int j = 1; j < K; ++j)
       if (lambda[j] != 0) sum += lambda[j] * h.colour[j].fromBase(x, y);
-    const float own = ledger.covariance(0, 0);
-    const float share = own > 0 ? varianceOf<K, float>(covarianceOf(ledger), lambda) / own : 1.0f;
+    const Matrix<K, float> c = covarianceOf(ledger);
+    const float share = c[0][0] > 0 ? varianceOf<K, float>(c, lambda) / c[0][0] : 1.0f;
     store(x, y, sum, h.variance(x, y) * share, lambda[reported]);
   }
 
@@ -162,27 +162,50 @@ Proposal<K> proposalByDrift(const Ledger<K>& ledger, const BlendParameters& p, c
   return proposal;
 }
 
-/// Fills the planes that windows average: lum(X_j - X_k) and its noise, both 0 for twins, and lum(X_0) if j is 0. Adds
-/// up the trend of difference `index`.
+/// Differences that windows average, each of[k] - reference.
 template <int K>
-void prepareDifference(const Histories<K>& h, const TwinTiles* twins, int index, int j, int k,
-                       const BlendScratch& scratch, Trend& trend) {
-  const core::ImageView<float> value = scratch[2 * index], noise = scratch[2 * index + 1], brightness = scratch.back();
+struct Compared {
+  int count, reference;
+  std::array<int, K> of{};
+
+  /// lagAll compares every history with the freshest, the others their pair.
+  explicit Compared(const BlendParameters& p) : count(1), reference(p.pair[1]) {
+    of[0] = p.pair[0];
+    if (p.mode == BlendMode::lagAll) count = K - 1, of = Against<K>(reference).of;
+  }
+};
+
+/// Fills the planes that windows average, lum(X_j - X_r) and its noise, both 0 for twins, and lum(X_0); adds up trends.
+template <int K>
+void prepareDifferences(const Histories<K>& h, const TwinTiles* twins, const Compared<K>& compared,
+                        const BlendScratch& scratch, Trend& trend) {
+  const auto preparePixel = [&](int x, int y, Trend::TileSums& sums) {
+    const Ledger<K> ledger = h.ledger(x, y);
+    const int r = compared.reference;
+    const float brightness = luminance(h.colour[0].load(x, y)), age = ledger.age(r);
+    const vec3 base = h.colour[r].fromBase(x, y);
+    for (int k = 0; k < compared.count; ++k) {
+      const int j = compared.of[k];
+      const float d = luminance(h.colour[j].fromBase(x, y) - base);
+      scratch[2 * k](x, y) = d;
+      scratch[2 * k + 1](x, y) = h.sampleVariance(x, y) * pairOf<K, float>(ledger, j, r).difference();
+      sums[k].add(d, ledger.age(j) - age, brightness);
+    }
+    scratch.back()(x, y) = brightness;
+  };
   core::forEachTile(
-      value.width, value.height,
+      h.variance.width, h.variance.height,
       [&](int x0, int y0, int x1, int y1) {
         const bool same = twins && twins->at(x0, y0);
-        Trend::Sums& sums = trend.tile(x0, y0)[index];
+        Trend::TileSums sums{};
         for (int y = y0; y < y1; ++y)
           for (int x = x0; x < x1; ++x) {
-            if (index == 0) brightness(x, y) = luminance(h.colour[0].load(x, y));
-            value(x, y) = noise(x, y) = 0;
-            if (same) continue;
-            const Ledger<K> ledger = h.ledger(x, y);
-            value(x, y) = luminance(h.colour[j].fromBase(x, y) - h.colour[k].fromBase(x, y));
-            noise(x, y) = h.sampleVariance(x, y) * pairOf<K, float>(ledger, j, k).difference();
-            sums.add(value(x, y), ledger.age(j) - ledger.age(k), brightness(x, y));
+            if (!same)
+              preparePixel(x, y, sums);
+            else
+              for (const auto& plane : scratch) plane(x, y) = 0;
           }
+        trend.tile(x0, y0) = sums;
       },
       TwinTiles::kSide);
 }
@@ -211,19 +234,15 @@ void blendRow(const Histories<K>& h, const BlendParameters& p, const TwinTiles* 
   }
 }
 
-/// lagAll compares every history with the freshest, the others their pair.
 template <int K>
 void blendByDrift(const Histories<K>& h, const core::Guide& guide, const BlendParameters& p, const TwinTiles* twins,
                   const BlendScratch& scratch, const Sink<K>& sink) {
-  const bool all = p.mode == BlendMode::lagAll;
-  const Against<K> against(p.pair[1]);
-  DriftSource source{guide, p.edges, p.radius, h.sampleVariance, scratch.back(), all ? K - 1 : 1, {}};
+  const Compared<K> compared(p);
   Trend trend(guide.width(), guide.height());
-  for (int k = 0; k < source.count; ++k) {
-    prepareDifference(h, twins, k, all ? against.of[k] : p.pair[0], p.pair[1], scratch, trend);
-    source.differences[k] = {scratch[2 * k], scratch[2 * k + 1]};
-  }
-  if (all && p.trend) trend.solve();
+  prepareDifferences(h, twins, compared, scratch, trend);
+  if (p.mode == BlendMode::lagAll && p.trend) trend.solve();
+  DriftSource source{guide, p.edges, p.radius, h.sampleVariance, scratch.back(), compared.count, {}};
+  for (int k = 0; k < compared.count; ++k) source.differences[k] = {scratch[2 * k], scratch[2 * k + 1]};
   const int reach = p.radius;
   core::forEachBlock(guide.width(), guide.height(), DriftBlock::kWidth, DriftBlock::kHeight,
                      [&](int x0, int y0, int x1, int y1) {

@@ -92,7 +92,7 @@ template <int K, class Real>
 Matrix<K, Real> covarianceOf(const Ledger<K, Real>& ledger) {
   Matrix<K, Real> c{};
   for (int j = 0; j < K; ++j)
-    for (int k = 0; k < K; ++k) c[j][k] = ledger.covariance(j, k);
+    for (int k = 0; k <= j; ++k) c[j][k] = c[k][j] = ledger.covariance(j, k);
   return c;
 }
 

@@ -81,11 +81,11 @@ WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, c
 template <int K>
 std::array<float, K> lagWeights(const Ledger<K>& ledger, const Against<K>& a, const WindowEvidence<K>& e, float rho,
                                 float lowest) {
-  Matrix<K, float> m{};
+  Matrix<K, float> m = covarianceOf(ledger);
   std::array<float, K> limit{};
   for (int j = 0; j < K; ++j) {
-    for (int k = 0; k < K; ++k) m[j][k] = e.noise * ledger.covariance(j, k) + rho * e.bias[j] * e.bias[k];
-    const float variance = e.noise * ledger.covariance(j, j);
+    const float variance = e.noise * m[j][j];
+    for (int k = 0; k < K; ++k) m[j][k] = e.noise * m[j][k] + rho * e.bias[j] * e.bias[k];
     if (j != a.reference) limit[j] = lowest * std::min(1.0f, cappedRatio(e.bias[j] * e.bias[j], variance));
   }
   return leastErrorWeights<K, float>(m, limit);
