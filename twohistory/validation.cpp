@@ -89,8 +89,8 @@ Vector leastInCube(const System& m, const Vector& right) {
 }  // namespace
 
 // [check theta]
-Shifts Evidence::solve(const ValidationParameters& p) const {
-  Shifts result{1, 1, 0};
+Shifts Evidence::solve(const ValidationParameters& p, float proven) const {
+  Shifts result{1, 1, proven};
   const double residual = sum[kSums - 2], count = sum[kSums - 1];
   if (!(count > 0) || !(residual > 0)) return result;
   System m;
@@ -99,7 +99,7 @@ Shifts Evidence::solve(const ValidationParameters& p) const {
   for (int j = 0; j < kShifts; ++j) {
     const double tau = static_cast<double>(j == kCorrection ? p.proof : p.trust);
     const double prior = residual / count / (tau * tau);
-    right[j] = sum[j] + (j == kCorrection ? 0 : prior);
+    right[j] = sum[j] + (j == kCorrection ? static_cast<double>(proven) : 1) * prior;
     for (int k = 0; k <= j; ++k) m[j][k] = m[k][j] = sum[next++] + (j == k ? prior : 0);
   }
   const Vector theta = leastInCube(m, right);
@@ -120,16 +120,19 @@ void Validation::fit(int width, int height, const UsualCount& usual) {
 void Validation::solve(const ValidationParameters& p) {
   const int width = keep_.width(), height = keep_.height();
   std::array<Evidence, kRegimes> all;
-  const double share = static_cast<double>(p.shared) / (width * height);
+  const double weight = static_cast<double>(p.shared) / (width * height);
   for (int i = 0; i < width * height; ++i)
-    for (int c = 0; c < kRegimes; ++c) all[c].accumulate(evidence_.data()[i][c], share);
+    for (int c = 0; c < kRegimes; ++c) all[c].accumulate(evidence_.data()[i][c], weight);
   core::forEachPixel(width, height, [&](int x, int y) {
+    std::array<Evidence, kRegimes> sum = all;
+    Evidence pooled;
     for (int c = 0; c < kRegimes; ++c) {
-      Evidence sum = all[c];
       for (int v = std::max(0, y - 1); v <= std::min(y + 1, height - 1); ++v)
-        for (int u = std::max(0, x - 1); u <= std::min(x + 1, width - 1); ++u) sum.accumulate(evidence_(u, v)[c], 1);
-      keep_(x, y)[c] = sum.solve(p);
+        for (int u = std::max(0, x - 1); u <= std::min(x + 1, width - 1); ++u) sum[c].accumulate(evidence_(u, v)[c], 1);
+      pooled.accumulate(sum[c].stored(), 1);
     }
+    const float share = pooled.solve(p)[kCorrection], proven = share * share * share * share;  // [check proven]
+    for (int c = 0; c < kRegimes; ++c) keep_(x, y)[c] = sum[c].solve(p, proven);
   });
 }
 

@@ -11,6 +11,10 @@
 // over a tile, its neighbours and recent frames. R_jj = (mean of w r^2) / tau_j^2 says how firmly theta_0 is believed
 // before there was a check: 1 for histories, 0 for the correction, which amplifies noise where it is wrong. Sums are
 // kept apart by count regime: where the fovea arrives, where it left, and elsewhere.
+//
+//   [check proven]  theta_0 of a regime's correction = theta_q^4 of all regimes together
+//
+// so that a correction that is certain elsewhere makes no step where evidence of a regime is scarce.
 #pragma once
 
 #include <array>
@@ -86,8 +90,8 @@ struct Evidence {
   void add(const Innovation& r, const Shifts& shift);
   void accumulate(const Stored& other, double factor);
   Stored stored() const;
-  /// [check theta]
-  Shifts solve(const ValidationParameters& p) const;
+  /// [check theta]. proven: theta_0 of the correction ([check proven]).
+  Shifts solve(const ValidationParameters& p, float proven = 0) const;
 };
 
 /// What a blend shifted a pixel by, and in which regime: lambda_j within [-4, 4] and the correction q, in units of X_0,
