@@ -57,8 +57,7 @@ struct BlendParameters {
   float correction = 0;                  ///< c: share of the lag left in `lagAll`'s blend that is taken away, in [0, 1]
   float lagError = 0.5f;                 ///< epsilon: relative standard deviation of that lag's estimate
   int radius = 3;                        ///< of the window that estimates drift, pixels
-  int wide = 0;       ///< radius of a wider window, whose mean the first one's is shrunk towards (lagAll); 0 = none
-  bool trend = true;  ///< lagAll shrinks differences towards those of large areas, not towards 0
+  bool trend = true;                     ///< lagAll shrinks differences towards those of large areas, not towards 0
   NoiseEstimate noise = NoiseEstimate::predicted;
   core::EdgeParameters edges;
   ValidationParameters validation;

@@ -37,18 +37,20 @@ TWOFOLD_CLONES void addDifference(const float* o, const float* d, const float* v
   }
 }
 
-/// The window's share of one row of sums whose weights or squared weights are to be scaled by o.
+/// all += o (left + centre + right)
 TWOFOLD_CLONES void addRow(const float* o, const float* left, const float* centre, const float* right, int count,
                            float* __restrict all) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) all[i] += o[i] * (left[i] + centre[i] + right[i]);
 }
 
+/// sum += o (a + b)
 TWOFOLD_CLONES void addPair(const float* o, const float* a, const float* b, int count, float* __restrict sum) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) sum[i] += o[i] * (a[i] + b[i]);
 }
 
+/// sum += o^2 v
 TWOFOLD_CLONES void addSquared(const float* o, const float* v, int count, float* __restrict sum) {
 #pragma omp simd
   for (int i = 0; i < count; ++i) sum[i] += o[i] * o[i] * v[i];

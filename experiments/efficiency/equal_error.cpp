@@ -1,9 +1,10 @@
 #include "experiments/efficiency/equal_error.h"
-#include "core/maths.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "core/maths.h"
 
 namespace experiments::efficiency {
 namespace {

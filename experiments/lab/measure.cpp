@@ -4,8 +4,6 @@
 #include "core/parallel.h"
 
 namespace experiments::lab {
-namespace {}  // namespace
-
 void Measure::add(core::PlanesView<const float> image, core::PlanesView<const float> truth,
                   const FovealMemory& memory) {
   core::Image<float> error(image.width(), image.height()), seen(error), level(error);
