@@ -87,6 +87,16 @@ TEST(Evidence, SolvesOverTheCubeAndNotByClamping) {
   EXPECT_GT(clampedIsWorse, 50);  // control: the unconstrained least (nearly the truth), clamped, is not it
 }
 
+// A regime of few pixels begins from what all have proven; its own evidence outweighs that.
+TEST(Evidence, BeginsACorrectionFromWhatIsProven) {
+  const int q = twohistory::kCorrection;
+  EXPECT_EQ(Evidence{}.solve({}, 0.9f)[q], 0.9f);
+  EXPECT_EQ(Evidence{}.solve({})[q], 0);  // control
+  const Evidence few = simulate({1, 1, 0.9f}, 1, 3), many = simulate({1, 1, 0.1f}, 1, 200'000);
+  EXPECT_GT(few.solve({}, 0.9f)[q], few.solve({})[q] + 0.5f);
+  EXPECT_NEAR(many.solve({}, 0.9f)[q], 0.1f, 0.02f);
+}
+
 TEST(Evidence, BelievesTheBlendUntilThereIsSome) {
   EXPECT_EQ(Evidence{}.solve({}), (Shifts{1, 1, 0}));
   const Shifts little = simulate({0, 0, 0}, 4, 3).solve({}), much = simulate({0, 0, 0}, 4, 30'000).solve({});
