@@ -203,7 +203,7 @@ void prepareDifferences(const Histories<K>& h, const TwinTiles* twins, const Com
             if (!same)
               preparePixel(x, y, sums);
             else
-              for (const auto& plane : scratch) plane(x, y) = 0;
+              for (int k = 0; k < 2 * compared.count; ++k) scratch[k](x, y) = 0;  // pairs read no brightness
           }
         trend.tile(x0, y0) = sums;
       },
