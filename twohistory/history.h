@@ -43,13 +43,10 @@ concept Merge = requires(const M& m, const Before& before, const Value& old, con
 /// Taps that are all empty keep their bilinear weights, so that a value outlives its weight. weightOf(k): W at tap k.
 template <class WeightOf>
 Taps premultipliedBy(const Taps& taps, const WeightOf& weightOf) {
-  Taps result = taps;
-  float sum = 0;
-  for (int k = 0; k < 4; ++k)
-    if (taps.b[k] > 0) sum += result.b[k] = taps.b[k] * weightOf(k);
+  const auto product = [&](int k) { return taps.b[k] > 0 ? taps.b[k] * weightOf(k) : 0.0f; };
+  const float b0 = product(0), b1 = product(1), b2 = product(2), b3 = product(3), sum = b0 + b1 + b2 + b3;
   if (!(sum > 0)) return taps;
-  for (float& b : result.b) b /= sum;
-  return result;
+  return {taps.pixel, {b0 / sum, b1 / sum, b2 / sum, b3 / sum}};
 }
 
 template <int K, class Ledgers>

@@ -50,18 +50,37 @@ inline bool canBeTwins(const Policies<2>& p) {
          p[0].amount == p[1].amount;
 }
 
-/// The common ratio of twins under all taps, or 0: then they do not stay twins for certain.
-inline std::uint16_t twinRatio(const Taps& taps, In<StoredLedger<2>> before, float n) {
-  std::uint16_t ratio = 0;
+inline constexpr std::uint16_t kNoTwin = 0xffff;  ///< in place of a ratio W_1 / W_0
+
+/// The common ratio of twins under all taps with b > 0, or kNoTwin.
+inline std::uint16_t commonRatio(const Taps& taps, In<StoredLedger<2>> before) {
+  std::uint16_t ratio = kNoTwin;
   for (int k = 0; k < 4; ++k) {
     if (!(taps.b[k] > 0)) continue;
     const StoredLedger<2>& tap = before.at(taps.pixel[k]);
-    if (!tap.isTwin() || !small_float::isPowerOfTwo(tap.ratioCode())) return 0;
-    if (ratio != 0 && tap.ratioCode() != ratio) return 0;
+    if (!tap.isTwin() || (ratio != kNoTwin && tap.ratioCode() != ratio)) return kNoTwin;
     ratio = tap.ratioCode();
   }
+  return ratio;
+}
+
+/// The same at once where taps without weight agree, too, as they nearly always do.
+inline std::uint16_t ratioBefore(const Taps& taps, In<StoredLedger<2>> before) {
+  const StoredLedger<2>&a = before.at(taps.pixel[0]), &b = before.at(taps.pixel[1]);
+  const StoredLedger<2>&c = before.at(taps.pixel[2]), &d = before.at(taps.pixel[3]);
+  const bool alike = a.isTwin() & b.isTwin() & c.isTwin() & d.isTwin() & (a.ratioCode() == b.ratioCode()) &
+                     (a.ratioCode() == c.ratioCode()) & (a.ratioCode() == d.ratioCode());
+  return alike ? a.ratioCode() : commonRatio(taps, before);
+}
+
+/// The ratio of a pixel that stays a twin for certain, or begins as one; else kNoTwin. 0: both histories are empty.
+inline std::uint16_t twinRatio(const Taps& taps, In<StoredLedger<2>> before, float n) {
+  const std::uint16_t ratio = taps.valid() ? ratioBefore(taps, before) : small_float::pack(n, 0);
+  if (ratio == 0 && n == 0) return 0;
   constexpr float kMost = 4096;  // heavier weights than 4096 / (1 - 0.999) would be capped
-  return n == 0 || (small_float::unpack(ratio) == n && n <= kMost) ? ratio : std::uint16_t{0};
+  const bool stays =
+      small_float::isPowerOfTwo(ratio) && ((n == 0) | ((small_float::unpack(ratio) == n) & (n <= kMost)));
+  return stays ? ratio : kNoTwin;
 }
 
 /// accumulateInto for the slides' pair, with the second history skipped where it is the first.
@@ -88,11 +107,13 @@ class TwinAccumulation {
           bool all = true;
           for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) {
-              const std::uint16_t ratio = twinRatio(taps(x, y), before.packed, n(x, y));
-              if (ratio == 0)
+              const Taps& t = taps(x, y);
+              const float count = n(x, y);
+              const std::uint16_t ratio = twinRatio(t, before.packed, count);
+              if (ratio == kNoTwin)
                 all &= stepBoth(x, y);
               else
-                stepTwin(x, y, ratio, isZero);
+                stepTwin(x, y, t, count, ratio, isZero);
             }
           flag = all;
         },
@@ -106,9 +127,10 @@ class TwinAccumulation {
     Ledger<1> at(std::ptrdiff_t i) const { return packed.at(i).first(); }
   };
 
-  void stepTwin(int x, int y, std::uint16_t ratio, bool isZero) const {
+  [[gnu::always_inline]] void stepTwin(int x, int y, const Taps& t, float count, std::uint16_t ratio,
+                                       bool isZero) const {
     const First first{before.packed};
-    const Recall<1> recall(taps(x, y), first, {policies[0]}, n(x, y));
+    const Recall<1> recall(t, first, {policies[0]}, count);
     now.packed(x, y) = StoredLedger<2>::twin(recall.now, ratio, now.dither(x, y));
     const Step step = recall.step(0, {x, y});
     valueNow[0].store(x, y, merge.merge(merge.gather(valueBefore[0], step), fresh.load(x, y), step));
@@ -116,7 +138,7 @@ class TwinAccumulation {
   }
 
   /// Returns whether the pixel has become a twin.
-  bool stepBoth(int x, int y) const {
+  [[gnu::noinline]] bool stepBoth(int x, int y) const {
     const Recall<2> recall(taps(x, y), before, policies, n(x, y));
     for (int j = 0; j < 2; ++j) {
       const Step step = recall.step(j, {x, y});
