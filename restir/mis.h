@@ -9,6 +9,8 @@
 //   [merge 5]  pairwise, with C = sum_j c_j and N = C - c_0, i > 0:                              3 k targets
 //                             m_i(y) = c_i / C  N p_i(y) / (c_0 p_0(y) + N p_i(y))
 //                             m_0(y) = c_0 / C + sum_i c_i / C  c_0 p_0(y) / (c_0 p_0(y) + N p_i(y))
+//   [merge 6]  no choice: sum_i g(y_i) m_i(y_i) W_i, in [merge 4] each term times its own factor: the mean of what
+//              [merge 1] chooses from, one evaluation of g an input
 // The factor of [merge 4] depends on the chosen sample alone, so E[W g(y)] = sum over y of g(y) sum_i c_i [p_i(y) > 0]
 // / Z(y) = sum of g: W is an unbiased contribution weight like any other, and may be merged again. Each unbiased mode
 // needs c_0 > 0. The summand c_0 / C makes [merge 5] defensive: the canonical input keeps that share wherever it is.
@@ -89,21 +91,37 @@ double normalisation(Mis mis, std::span<const Source<T>> sources, const LightSam
   return able > 0 && canonical > 0 ? sumConfidence(sources) / able : 0.0;  // [merge 4]
 }
 
+/// Calls body(y_i, p_0(y_i), m_i(y_i) W_i) for every input whose sample the canonical target can use.
+template <class T, class Body>
+void forEachWeighted(std::span<const Source<T>> sources, Mis mis, Body&& body) {
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    const Reservoir& r = sources[i].reservoir;
+    if (!(r.unbiasedWeight > 0 && r.confidence > 0)) continue;
+    const float target = sources[0].target(r.sample);
+    if (target > 0) body(r.sample, target, misWeight(mis, sources, i, r.sample, target) * r.unbiasedWeight);
+  }
+}
+
 /// Resamples the inputs into one reservoir, stamped with `frame`. Null samples keep their confidence. Which inputs
 /// there are, and their confidences, must not depend on their samples.
 template <class T>
 Reservoir mergeReservoirs(std::span<const Source<T>> sources, Mis mis, std::uint32_t frame, core::Rng& rng) {
   ReservoirBuilder builder;
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    const Reservoir& r = sources[i].reservoir;
-    if (!(r.unbiasedWeight > 0 && r.confidence > 0)) continue;
-    const float target = sources[0].target(r.sample);
-    if (!(target > 0)) continue;
-    const double m = misWeight(mis, sources, i, r.sample, target);
-    builder.add(r.sample, target, m * target * r.unbiasedWeight, rng);  // [merge 1]
-  }
+  forEachWeighted<T>(sources, mis, [&](const LightSample& y, float target, double weight) {
+    builder.add(y, target, target * weight, rng);  // [merge 1]
+  });
   const double factor = builder.empty() ? 1 : normalisation(mis, sources, builder.sample(), builder.target());
   return builder.finish(sumConfidence(sources), frame, factor);
+}
+
+/// The sum of [merge 6] without a choice: calls body(y_i, its unbiased contribution weight) for every input that adds
+/// to it. The same rules as for mergeReservoirs.
+template <class T, class Body>
+void forEachMerged(std::span<const Source<T>> sources, Mis mis, Body&& body) {
+  forEachWeighted<T>(sources, mis, [&](const LightSample& y, float target, double weight) {
+    const auto w = static_cast<float>(weight * normalisation(mis, sources, y, target));
+    if (w > 0 && w < ReservoirBuilder::kLargest) body(y, w);
+  });
 }
 
 }  // namespace restir

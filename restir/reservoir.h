@@ -25,6 +25,8 @@ static_assert(sizeof(Reservoir) <= 32);
 /// positive and finite counts as one of weight 0.
 class ReservoirBuilder {
  public:
+  static constexpr float kLargest = 1e37f;  ///< weights and targets from here on count as not finite
+
   /// w: resampling weight m p-hat W of the candidate; target: p-hat of it, which finish() divides by.
   void add(const LightSample& candidate, float target, double w, core::Rng& rng) {
     if (!(w > 0 && w < kLargest && target > 0 && target < kLargest)) return;
@@ -46,7 +48,6 @@ class ReservoirBuilder {
   }
 
  private:
-  static constexpr float kLargest = 1e37f;
   LightSample sample_;
   float target_ = 1;
   double sum_ = 0;

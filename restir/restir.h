@@ -2,7 +2,7 @@
 //
 //   drawCandidates           n batches of candidates a pixel into a fresh reservoir of confidence weight(n)
 //   reuseTemporally          resamples it with the pixel's history, whose target is the previous frame's
-//   reuseSpatiallyAndShade   n times: resamples with neighbours, one shadow ray; averages
+//   reuseSpatiallyAndShade   n times: resamples with neighbours, one shadow ray (or one for each: Shaded); averages
 //
 // Rules that keep it unbiased: taps, neighbours and confidences follow from geometry, counts and random numbers, never
 // from a reservoir's sample; null samples keep their confidence; what is kept for the next frame is the reservoir
@@ -44,6 +44,11 @@ enum class WithoutReuse { ris, uniform, power, tree };
 /// automatic: kernels are compiled for the lights that the scene has. all: for every kind, to measure what that costs.
 enum class Features { automatic, all };
 
+/// What a result of spatial reuse shades. chosen: the one sample that resampling chose. all: every sample that it would
+/// have chosen from, weighted as it would: as many shadow rays, and none of the noise of choosing.
+/// Source: Wyman and Panteleev, "Rearchitecting Spatiotemporal Resampling for Production" (2021), decoupled shading.
+enum class Shaded { chosen, all };
+
 struct TemporalParameters {
   twohistory::Policy policy{twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, 20};
   Choice tap = Choice::stochastic;  ///< `best` is 5 % quieter in the median but keeps its fireflies: docs/decisions.md
@@ -70,6 +75,7 @@ struct RestirParameters {
   CandidateParameters candidates;
   TemporalParameters temporal;
   SpatialParameters spatial;
+  Shaded shaded = Shaded::chosen;
   SecondParameters second;
   Features features = Features::automatic;
   /// Targets include the shadow ray of their own surface at their own instant (target.h), and the last one is reused
@@ -196,6 +202,8 @@ void describe(V& v, RestirParameters& p) {
   v("candidates", p.candidates, "fresh candidates");
   v("temporal", p.temporal, "reuse from the frame before");
   v("spatial", p.spatial, "reuse from neighbours");
+  v.choice("shaded", p.shaded, {{"chosen", Shaded::chosen}, {"all", Shaded::all}},
+           "of the samples that neighbours and pixel merge: the one that is chosen, or all of them, a ray each");
   v("second", p.second, "a second history of reservoirs");
 }
 

@@ -42,21 +42,39 @@ Reservoir drawBatch(const Pixel<F, kVisibility>& pixel, int result) {
   return builder.finish(1, pixel.frame.now.frame);
 }
 
-/// The pixel's reservoir merged with those of chosen neighbours, each with the target that it had.
+template <class T>
+using Sources = InlineVector<Source<T>, kMostNeighbours + 1>;
+
+/// The pixel's reservoir and those of chosen neighbours, each with the target that it had.
 template <LightFeatures F, bool kVisibility>
-Reservoir reuseNeighbours(const Pixel<F, kVisibility>& pixel, int result) {
+Sources<Target<F, kVisibility>> sourcesOf(const Pixel<F, kVisibility>& pixel, core::Rng& rng) {
   const RestirState& state = pixel.state;
   const Moment& now = pixel.frame.now;
-  core::Rng rng = pixel.rng(core::Pass::spatial, result);
   const Neighbours neighbours = chooseNeighbours(now, pixel.at, pixel.parameters.spatial, rng);
-  InlineVector<Source<Target<F, kVisibility>>, kMostNeighbours + 1> sources;
+  Sources<Target<F, kVisibility>> sources;
   sources.add(state.now(pixel.at.x, pixel.at.y), pixel.target);
   for (int i = 0; i < neighbours.count; ++i) {
     const Reservoir& r = state.now.view().at(neighbours.pixel[i]);
     const TargetParts parts = partsOf(r, neighbours.pixel[i], now, state.waited.view(), state.past);
     sources.add(r, parts.template target<F, kVisibility>());
   }
-  return mergeReservoirs<Target<F, kVisibility>>(sources, pixel.parameters.mis, now.frame, rng);
+  return sources;
+}
+
+/// One result of spatial reuse: the pixel's reservoir merged with those of neighbours, and shaded.
+template <LightFeatures F, bool kVisibility>
+vec3 shadeMerged(const Pixel<F, kVisibility>& pixel, int result) {
+  using T = Target<F, kVisibility>;
+  const RestirParameters& p = pixel.parameters;
+  core::Rng rng = pixel.rng(core::Pass::spatial, result);
+  const Sources<T> sources = sourcesOf(pixel, rng);
+  const std::uint32_t now = pixel.frame.now.frame;
+  if (p.shaded == Shaded::chosen) return shadeSample(pixel, mergeReservoirs<T>(sources, p.mis, now, rng));
+  vec3 sum(0);
+  forEachMerged<T>(sources, p.mis, [&](const LightSample& y, float weight) {
+    sum += shadeSample(pixel, Reservoir{y, weight, 1, now});  // [merge 6]
+  });
+  return sum;
 }
 
 /// Mean of the results. One reservoir without neighbours gives one result, however many samples it stands for.
@@ -66,8 +84,7 @@ vec3 shadePixel(const Pixel<F, kVisibility>& pixel, int batches) {
   if (reuse == Reuse::temporal) return shadeSample(pixel, pixel.state.now(pixel.at.x, pixel.at.y));
   vec3 sum(0);
   for (int i = 0; i < batches; ++i)
-    sum += reuse == Reuse::none ? shadeSample(pixel, drawBatch(pixel, i), false)
-                                : shadeSample(pixel, reuseNeighbours(pixel, i));
+    sum += reuse == Reuse::none ? shadeSample(pixel, drawBatch(pixel, i), false) : shadeMerged(pixel, i);
   return sum / static_cast<float>(batches);
 }
 

@@ -102,11 +102,25 @@ Reservoir temporal(int pixel, Mis mis, core::Rng& rng, const Table& drawnFor, co
   return restir::mergeReservoirs<Table>(sources, mis, 0, rng);
 }
 
-Reservoir spatial(int pixel, Mis mis, core::Rng& rng, const std::function<Reservoir(int)>& reservoirOf) {
+std::vector<Source> spatialSources(int pixel, const std::function<Reservoir(int)>& reservoirOf) {
   std::vector<Source> sources{{reservoirOf(pixel), kNow[pixel]}};
   for (int q = 0; q < 3; ++q)
     if (q != pixel) sources.push_back({reservoirOf(q), kNow[q]});
-  return restir::mergeReservoirs<Table>(sources, mis, 0, rng);
+  return sources;
+}
+
+Reservoir spatial(int pixel, Mis mis, core::Rng& rng, const std::function<Reservoir(int)>& reservoirOf) {
+  return restir::mergeReservoirs<Table>(spatialSources(pixel, reservoirOf), mis, 0, rng);
+}
+
+/// The same in time and space, with every sample shaded in place of the one that is chosen.
+float shadeAll(int pixel, Mis mis, core::Rng& rng) {
+  const auto sources = spatialSources(pixel, [&](int q) { return temporal(q, mis, rng, kBefore[q], kBefore[q]); });
+  float sum = 0;
+  restir::forEachMerged<Table>(sources, mis, [&](const LightSample& y, float weight) {
+    sum += shadePixel(pixel, Reservoir{y, weight, 1, 0});
+  });
+  return sum;
 }
 
 TEST(TinyWorld, ResamplingAloneIsUnbiased) {
@@ -140,6 +154,11 @@ TEST_P(UnbiasedMode, InTimeAndSpace) {
                                        }));
                    }),
                    exact(p));
+}
+
+TEST_P(UnbiasedMode, InTimeAndSpaceWithAllSamplesShaded) {
+  for (int p = 0; p < 3; ++p)
+    expectUnbiased(average([&](core::Rng& rng) { return shadeAll(p, GetParam(), rng); }), exact(p));
 }
 
 INSTANTIATE_TEST_SUITE_P(TinyWorld, UnbiasedMode, testing::Values(Mis::contribution, Mis::balance, Mis::pairwise));
@@ -184,6 +203,14 @@ TEST(TinyWorld, ConstantIsBiasedInTimeAndSpaceAsPredicted) {
       return shadePixel(p, spatial(p, Mis::constant, rng,
                                    [&](int q) { return temporal(q, Mis::constant, rng, kBefore[q], kBefore[q]); }));
     });
+    expectUnbiased(m, predictedInTimeAndSpace(p));
+    expectBiased(m, exact(p));
+  }
+}
+
+TEST(TinyWorld, ConstantIsBiasedByTheSameWithAllSamplesShaded) {
+  for (int p = 0; p < 3; ++p) {
+    const auto m = average([&](core::Rng& rng) { return shadeAll(p, Mis::constant, rng); });
     expectUnbiased(m, predictedInTimeAndSpace(p));
     expectBiased(m, exact(p));
   }
