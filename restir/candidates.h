@@ -8,6 +8,8 @@
 // its end. Then the density of light point y is exactly pdf(direction) x (area cos_light / d^2, or d omega / d(u, v)),
 // hidden or not. With n batches of L light and B BSDF samples, the balance heuristic gives every candidate the weight
 //   [candidates 1]  w = p-hat(y) / (n (L p_light(y) + B p_bsdf(y)))
+// B need not be whole: then the last BSDF sample of a batch is drawn with the probability that is left, whatever the
+// batch has found, and the mean of the sum over candidates stays.
 #pragma once
 
 #include "core/tracer.h"
@@ -18,10 +20,18 @@
 namespace restir {
 
 struct CandidateParameters {
-  int lightSamples = 8;  ///< a batch
-  int bsdfSamples = 1;   ///< a batch
+  int lightSamples = 8;    ///< a batch
+  double bsdfSamples = 1;  ///< a batch; a fraction is a probability
+  /// Factor on them where lights outgrow the cache: a ray through a tree of so many emitters costs as much as dozens of
+  /// light samples, and finds no more of their light than it would of a few.
+  double bsdfShareOfMany = 0.25;
   TileUse lightTiles = TileUse::automatic;
 };
+
+/// B of [candidates 1] for these lights.
+inline double bsdfSamplesFor(const CandidateParameters& p, const Lights& lights) {
+  return p.bsdfSamples * (lights.size() >= LightTiles::kManyLights ? p.bsdfShareOfMany : 1);
+}
 
 /// A BSDF ray meets at most this many emitters; more along one line are dropped (their energy is lost).
 inline constexpr int kMostEmittersOnARay = 64;
@@ -56,7 +66,8 @@ class Candidates {
              const CandidateParameters& parameters, int total, std::span<const core::PresampledLight> tile = {})
       : target_(target),
         tracer_(tracer),
-        parameters_(parameters),
+        lightSamples_(parameters.lightSamples),
+        bsdfSamples_(bsdfSamplesFor(parameters, target.lights())),
         origin_(core::offsetOrigin(surface.position, surface.geometricNormal)),
         total_(total),
         tile_(tile) {}
@@ -66,7 +77,10 @@ class Candidates {
     if (lights.empty()) return;
     addLightSamples(rng, builder);
     if (!lights.anyHittable()) return;
-    for (int i = 0; i < parameters_.bsdfSamples; ++i) {
+    const int whole = static_cast<int>(bsdfSamples_);
+    const double rest = bsdfSamples_ - whole;
+    const int count = whole + (rest > 0 && rng.uniform() < rest);
+    for (int i = 0; i < count; ++i) {
       const core::BsdfSample s = target_.bsdf().sample(rng.uniform3());
       if (s.pdf > 0) follow(s.direction, rng, builder);
     }
@@ -75,7 +89,7 @@ class Candidates {
  private:
   void addLightSamples(core::Rng& rng, ReservoirBuilder& builder) const {
     const Lights& lights = target_.lights();
-    for (int i = 0; i < parameters_.lightSamples; ++i) {
+    for (int i = 0; i < lightSamples_; ++i) {
       if (tile_.empty()) {
         const LightSample y = lights.sample(rng);
         add(y, target_.incident(y), lights.pdf(y), rng, builder);
@@ -102,13 +116,14 @@ class Candidates {
     const BsdfValue bsdf = target_.bsdf().value(in.direction);
     const float target = core::luminance(bsdf.f * flux);
     const double bsdfPdf = target_.lights().isHittable(y.light) ? double{bsdf.pdf} * in.geometry : 0.0;
-    const double density = parameters_.lightSamples * double{lightPdf} + parameters_.bsdfSamples * bsdfPdf;
+    const double density = lightSamples_ * double{lightPdf} + bsdfSamples_ * bsdfPdf;
     builder.add(y, target, target / (total_ * density), rng);  // [candidates 1]
   }
 
   const Target<F>& target_;
   const core::Tracer& tracer_;
-  CandidateParameters parameters_;
+  int lightSamples_;
+  double bsdfSamples_;
   vec3 origin_;
   double total_;
   std::span<const core::PresampledLight> tile_;

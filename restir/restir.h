@@ -143,7 +143,8 @@ void reuseSpatiallyAndShade(const RestirParameters& parameters, const Frame& fra
 template <class V>
 void describe(V& v, CandidateParameters& p) {
   v("lightSamples", p.lightSamples, "light samples a batch; a pixel of n samples draws n batches", 1, 4096);
-  v("bsdfSamples", p.bsdfSamples, "BSDF samples a batch", 0, 4096);
+  v("bsdfSamples", p.bsdfSamples, "BSDF samples a batch; a fraction is a probability", 0.0, 4096.0);
+  v("bsdfShareOfMany", p.bsdfShareOfMany, "factor on bsdfSamples where lights outgrow the cache", 0.0, 1.0);
   v.choice("lightTiles", p.lightTiles,
            {{"auto", TileUse::automatic}, {"always", TileUse::always}, {"never", TileUse::never}},
            "light samples from tiles that blocks of pixels share; auto: where lights outgrow the cache");

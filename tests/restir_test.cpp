@@ -8,7 +8,6 @@
 
 #include <cstring>
 
-#include "restir/visibility.h"
 #include "tests/restir_worlds.h"
 
 namespace {
@@ -151,58 +150,6 @@ TEST(Restir, MeanOfManyResultsIsTheMeanOfOne) {
   EXPECT_LT(c.detectable, tests::detectableBias(0.02));
   EXPECT_LT(many.total.variance(), 0.7 * one.total.variance());
 }
-
-/// A BSDF ray that stops at the first thing it hits.
-struct FirstHit {
-  template <class Body>
-  void operator()(const core::Tracer& tracer, const core::Lights& lights, const vec3& origin, const vec3& direction,
-                  Body&& body) const {
-    const core::Hit hit = tracer.intersect(origin, direction);
-    const std::uint32_t light = hit.hit() ? lights.lightOf(hit.instance, hit.primitive) : core::kNoLight;
-    if (light != core::kNoLight) body(core::LightSample{light, hit.barycentric});
-  }
-};
-
-/// Sum over pixels of an unbiased estimate of the unshadowed light: W p-hat of fresh reservoirs.
-template <class Walk>
-double unshadowedSum(const core::Moment& now, const restir::CandidateParameters& parameters, std::uint32_t image) {
-  constexpr core::LightFeatures kFeatures{false, false};
-  double sum = 0;
-  for (std::uint32_t i = 0; i < tests::kPixels; ++i) {
-    const core::Surface& surface = now.surfaces.at(i);
-    if (!surface.hit()) continue;
-    const restir::Target<kFeatures> target(surface, now.cameraPosition, *now.lights);
-    const restir::Candidates<kFeatures, Walk> candidates(target, surface, *now.tracer, parameters, 1);
-    core::Rng rng(1, core::Pass::lab, i, image);
-    restir::ReservoirBuilder builder;
-    candidates.addBatch(rng, builder);
-    const restir::Reservoir r = builder.finish(1, 0);
-    sum += r.unbiasedWeight * target(r.sample);
-  }
-  return sum;
-}
-
-/// Interval at 1e-6 of many BSDF samples and a light sample combined, over light samples alone.
-template <class Walk>
-core::Interval unshadowedRatio() {
-  const World world(tests::makeWorld(), 1);
-  const core::Moment now = world.moment(0);
-  std::vector<double> ratios(1500);
-  tbb::parallel_for(std::size_t{0}, ratios.size(), [&](std::size_t i) {
-    const auto image = static_cast<std::uint32_t>(i);
-    ratios[i] = unshadowedSum<Walk>(now, {1, 16}, image) / unshadowedSum<Walk>(now, {128, 0}, 1'000'000 + image);
-  });
-  return core::meanInterval(ratios, 1 - 1e-6);
-}
-
-TEST(Candidates, RaysThroughOccludersKeepTheEnergyOfHiddenLight) {
-  const core::Interval through = unshadowedRatio<restir::ThroughOccluders>();
-  EXPECT_LT(through.low, 1);
-  EXPECT_GT(through.high, 1);
-  EXPECT_LT(through.halfWidth(), 0.01);
-}
-
-TEST(Candidates, RaysThatStopAtTheFirstHitLoseIt) { EXPECT_LT(unshadowedRatio<FirstHit>().high, 0.99); }
 
 bool sameBits(const core::Planes& a, const core::Planes& b) {
   for (int c = 0; c < 3; ++c)
