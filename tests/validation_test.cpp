@@ -156,6 +156,49 @@ TEST(Regime, ComparesACountWithTheUsualOne) {
   EXPECT_EQ(twohistory::UsualCount(twins)(l, 7), 7);  // two of a kind cannot tell
 }
 
+/// A frame of pixels whose blend corrected by q = 1, of which truth(x, y) was right.
+template <class Truth>
+twohistory::Validation checked(int width, int height, const ValidationParameters& p, const Truth& truth) {
+  twohistory::Validation v;
+  v.fit(width, height, {});
+  core::Image<twohistory::Taps> taps(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      taps(x, y) = twohistory::stillTap(y * width + x);
+      v.book(x, y, twohistory::Regime::equal, {0, 0, 1});
+    }
+  const auto innovation = [&](int x, int y) {
+    core::Rng rng(5, core::Pass::lab, static_cast<std::uint32_t>(y * width + x), 0);
+    return Innovation{truth(x, y) + rng.uniform() - 0.5f, 1};
+  };
+  v.update(p, taps, innovation, [](std::ptrdiff_t, int history) { return history == 0 ? 1.0f : 0.0f; });
+  return v;
+}
+
+TEST(Validation, ARegimeWithoutEvidenceBeginsFromWhatTheOthersHaveProven) {
+  for (const float truth : {0.9f, 0.5f, 0.0f}) {
+    const auto v = checked(64, 64, {}, [&](int, int) { return truth; });
+    const float known = v.keep(40, 40, twohistory::Regime::equal)[twohistory::kCorrection];
+    const float unknown = v.keep(40, 40, twohistory::Regime::more)[twohistory::kCorrection];
+    EXPECT_NEAR(known, truth, 0.05f);
+    EXPECT_NEAR(unknown, std::pow(truth, 4.0f), 0.1f);
+    EXPECT_LE(unknown, std::max(0.05f, known - 0.1f));  // control: it is not simply the same
+  }
+}
+
+TEST(Validation, TheWholeFrameCountsForOneTileAtAnyResolution) {
+  const auto keptInCorner = [](int side, const ValidationParameters& p) {  // where, alone, the correction was wrong
+    const auto v = checked(side, side, p, [](int x, int y) { return x < 48 && y < 48 ? 0.0f : 1.0f; });
+    return v.keep(0, 0, twohistory::Regime::equal)[twohistory::kCorrection];
+  };
+  for (const int side : {256, 768}) {
+    EXPECT_NEAR(keptInCorner(side, {}), 1.0f / 5, 0.06f) << side;  // four tiles against one
+    ValidationParameters tenth;                                    // control: a tenth of all tiles drowns the four
+    tenth.shared = static_cast<float>(side * side) / (10 * 16 * 16);
+    EXPECT_GT(keptInCorner(side, tenth), 0.7f) << side;
+  }
+}
+
 /// Error of a variant over unweighted's, geometric mean over three seeds, in one of the laboratory's cases.
 double labRatio(const std::string& name, const experiments::Json& variant, const std::string& region) {
   namespace lab = experiments::lab;
