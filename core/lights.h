@@ -191,17 +191,12 @@ class Lights {
 
 inline Incident Lights::fromTriangle(const vec3& point, const vec3& cross2Area, const vec3& radiance,
                                      std::uint32_t flags, const vec3& position) {
-  // Below `unsure` rounding of coordinates decides which side is seen. Where a surface lies in the light's plane, a
-  // target of 1e-16 would claim that it can find light which it never finds (merge 4: 0.4 % of the light was lost).
-  constexpr float kRounding = 0x1p-22f;
   const vec3 offset = point - position;
   const float distance2 = dot(offset, offset);
   float facing = -0.5f * dot(cross2Area, offset);  // area cos_light d
   if (flags & TriangleLight::kMirrored) facing = -facing;
   if (flags & TriangleLight::kDoubleSided) facing = std::abs(facing);
-  const vec3 one(1);
-  const float unsure = kRounding * dot(glm::abs(cross2Area), one) * dot(glm::abs(point) + glm::abs(position), one);
-  if (!(facing > unsure && distance2 > 0)) return {};
+  if (!(facing > 0 && distance2 > 0)) return {};
   const float distance = std::sqrt(distance2);
   return {offset / distance, distance, radiance, facing / (distance * distance2)};
 }

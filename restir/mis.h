@@ -5,13 +5,14 @@
 //   [merge 1]  w_i = m_i(y_i) p_0(y_i) W_i,   y drawn in proportion to w,   W = sum w / p_0(y),   c = sum c_i
 //   [merge 2]  constant:      m_i(y) = c_i / sum_j c_j        biased where p_i is 0 and another p_j is not
 //   [merge 3]  balance:       m_i(y) = c_i p_i(y) / sum_j c_j p_j(y)                             k^2 targets
-//   [merge 4]  contribution:  constant, and then W times sum_j c_j / Z(y), Z = sum of c_j over p_j(y) > 0
+//   [merge 4]  contribution:  m_i(y) = c_i / sum_j c_j where p_i(y) > 2^-20 p_0(y), else 0, and then W times
+//                             sum_j c_j / Z(y), Z = sum of those c_j
 //   [merge 5]  pairwise, with C = sum_j c_j and N = C - c_0, i > 0:                              3 k targets
 //                             m_i(y) = c_i / C  N p_i(y) / (c_0 p_0(y) + N p_i(y))
 //                             m_0(y) = c_0 / C + sum_i c_i / C  c_0 p_0(y) / (c_0 p_0(y) + N p_i(y))
 //   [merge 6]  no choice: sum_i g(y_i) m_i(y_i) W_i, in [merge 4] each term times its own factor: the mean of what
 //              [merge 1] chooses from, one evaluation of g an input
-// The factor of [merge 4] depends on the chosen sample alone, so E[W g(y)] = sum over y of g(y) sum_i c_i [p_i(y) > 0]
+// The factor of [merge 4] depends on the chosen sample alone, so E[W g(y)] = sum over y of g(y) sum_i c_i [i counts]
 // / Z(y) = sum of g: W is an unbiased contribution weight like any other, and may be merged again. Each unbiased mode
 // needs c_0 > 0. The summand c_0 / C makes [merge 5] defensive: the canonical input keeps that share wherever it is.
 // Sources: Bitterli et al., "Spatiotemporal Reservoir Resampling" (2020), algorithms 4 and 6; Lin et al., "Generalized
@@ -73,11 +74,21 @@ double pairwiseWeight(std::span<const Source<T>> sources, std::size_t i, const L
   return weight;
 }
 
+/// Whether input i counts for y in [merge 4]. A surface in a lamp's plane has a target of 1e-16 there, by rounding:
+/// that says that it can find y, and it never does. Who hardly can is left out, of Z and of the sum; both stay
+/// consistent.
+template <class T>
+bool reaches(std::span<const Source<T>> sources, std::size_t i, const LightSample& y, float canonical) {
+  constexpr float kLeast = 0x1p-20f;
+  return i == 0 ? canonical > 0 : sources[i].target(y) > kLeast * canonical;
+}
+
 /// m_i(y); canonical = p_0(y).
 template <class T>
 double misWeight(Mis mis, std::span<const Source<T>> sources, std::size_t i, const LightSample& y, float canonical) {
   if (mis == Mis::balance) return balanceWeight(sources, i, y, canonical);
   if (mis == Mis::pairwise) return pairwiseWeight(sources, i, y, canonical);
+  if (mis == Mis::contribution && !reaches(sources, i, y, canonical)) return 0;
   return sources[i].reservoir.confidence / sumConfidence(sources);  // [merge 2]
 }
 
@@ -87,7 +98,7 @@ double normalisation(Mis mis, std::span<const Source<T>> sources, const LightSam
   if (mis != Mis::contribution) return 1;
   double able = sources[0].reservoir.confidence;
   for (std::size_t j = 1; j < sources.size(); ++j)
-    if (const double c = sources[j].reservoir.confidence; c > 0 && sources[j].target(y) > 0) able += c;
+    if (const double c = sources[j].reservoir.confidence; c > 0 && reaches(sources, j, y, canonical)) able += c;
   return able > 0 && canonical > 0 ? sumConfidence(sources) / able : 0.0;  // [merge 4]
 }
 

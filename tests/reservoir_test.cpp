@@ -208,6 +208,31 @@ TEST(Mis, WeightTimesFunctionIsItsSumAfterMergesOfMerges) {
   EXPECT_GT(std::abs(zOfMerges(Mis::constant)), kLargestZ);
 }
 
+// A surface in a lamp's plane sees it by rounding alone: a target of 1e-16, which no candidate ever realises.
+TEST(Mis, ContributionDoesNotCountWhoSeesASampleByRoundingAlone) {
+  const std::array<Table, 2> targets{{{{2, 1}}, {{1e-16f, 3}}}};
+  core::RunningMoments moments, naive;
+  for (int t = 0; t < 50'000; ++t) {
+    core::Rng rng = rngOf(t);
+    std::vector<restir::Source<Table>> sources;
+    for (const Table& target : targets) {
+      ReservoirBuilder builder;
+      const LightSample y{rng.below(2), {}};
+      builder.add(y, target(y), 2.0 * target(y), rng);
+      sources.push_back({builder.finish(1, 0), target});
+    }
+    const Reservoir r = restir::mergeReservoirs<Table>(sources, Mis::contribution, 0, rng);
+    const bool chosen = r.unbiasedWeight > 0;
+    moments.add(chosen ? r.unbiasedWeight : 0.0);
+    // Control: whoever has any target counts, so nothing makes up for light 0, which input 1 never brings.
+    naive.add(chosen ? r.unbiasedWeight /
+                           restir::normalisation<Table>(Mis::contribution, sources, r.sample, targets[0](r.sample))
+                     : 0.0);
+  }
+  EXPECT_LT(std::abs(moments.mean() - 2) / std::sqrt(moments.meanVariance()), kLargestZ);
+  EXPECT_GT(std::abs(naive.mean() - 2) / std::sqrt(naive.meanVariance()), kLargestZ);
+}
+
 TEST(Mis, PairwiseLeavesTheCanonicalInputItsShare) {
   core::Rng rng = rngOf(0);
   for (int trial = 0; trial < 1000; ++trial) {
