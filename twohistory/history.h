@@ -65,12 +65,17 @@ struct Recall {
 
   /// before: anything whose at(index) is or becomes a Ledger<K>.
   template <class Ledgers>
-  Recall(const Taps& t, const Ledgers& before, const Policies<K>& policies, float n) : taps(t), samples(n) {
-    for (int k = 0; k < 4; ++k)
-      if (t.b[k] > 0) tap[k] = before.at(t.pixel[k]);
+  Recall(const Taps& t, const Ledgers& before, const Policies<K>& policies, float n)
+      : taps(t), samples(n), tap{read(before, 0), read(before, 1), read(before, 2), read(before, 3)} {
     gathered = gatherFrom<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
     change = advanceOf(gathered, policies, n);
     now = advance(gathered, change, n);
+  }
+  /// In place: a ledger that is unpacked field by field and then copied waits for its stores.
+  template <class Ledgers>
+  Ledger<K> read(const Ledgers& before, int k) const {
+    if (taps.b[k] > 0) return before.at(taps.pixel[k]);
+    return {};
   }
   Step step(int j, core::ivec2 pixel) const {
     return {pixel,
