@@ -80,7 +80,7 @@ double pairwiseWeight(std::span<const Source<T>> sources, std::size_t i, const L
 template <class T>
 bool reaches(std::span<const Source<T>> sources, std::size_t i, const LightSample& y, float canonical) {
   constexpr float kLeast = 0x1p-20f;
-  return i == 0 ? canonical > 0 : sources[i].target(y) > kLeast * canonical;
+  return i == 0 ? canonical > 0 : sources[i].target(y) > kLeast * canonical;  // [merge 4]
 }
 
 /// m_i(y); canonical = p_0(y).

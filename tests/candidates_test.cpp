@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "tests/restir_worlds.h"
 
 namespace {
@@ -24,28 +26,18 @@ struct FirstHit {
   }
 };
 
-/// Sum over pixels of an unbiased estimate of the unshadowed light: W p-hat of fresh reservoirs.
+/// Sum over pixels of the unshadowed light that one batch of candidates finds.
 template <class Walk>
-double unshadowedSum(const core::Moment& now, const restir::CandidateParameters& parameters, std::uint32_t image) {
-  constexpr core::LightFeatures kFeatures{false, false};
-  double sum = 0;
-  for (std::uint32_t i = 0; i < tests::kPixels; ++i) {
-    const core::Surface& surface = now.surfaces.at(i);
-    if (!surface.hit()) continue;
-    const restir::Target<kFeatures> target(surface, now.cameraPosition, *now.lights);
-    const restir::Candidates<kFeatures, Walk> candidates(target, surface, *now.tracer, parameters, 1);
-    core::Rng rng(1, core::Pass::lab, i, image);
-    restir::ReservoirBuilder builder;
-    candidates.addBatch(rng, builder);
-    const restir::Reservoir r = builder.finish(1, 0);
-    sum += r.unbiasedWeight * target(r.sample);
-  }
-  return sum;
+double unshadowedSum(const core::Moment& now, const CandidateParameters& parameters, std::uint32_t image) {
+  return tests::unshadowedSum(now, image, [&](const auto& target, const auto& surface, auto& rng, auto& builder) {
+    restir::Candidates<core::LightFeatures{false, false}, Walk>(target, surface, *now.tracer, parameters, 1)
+        .addBatch(rng, builder);
+  });
 }
 
 /// Interval at 1e-6 of the light that these candidates find, over light samples alone.
 template <class Walk>
-core::Interval unshadowedRatio(const restir::CandidateParameters& parameters = {1, 16}) {
+core::Interval unshadowedRatio(const CandidateParameters& parameters = {1, 16}) {
   const World world(tests::makeWorld(), 1);
   const core::Moment now = world.moment(0);
   std::vector<double> ratios(1500);
@@ -57,7 +49,7 @@ core::Interval unshadowedRatio(const restir::CandidateParameters& parameters = {
 }
 
 TEST(Candidates, RaysThroughOccludersKeepTheEnergyOfHiddenLight) {
-  const core::Interval through = unshadowedRatio<restir::ThroughOccluders>();
+  const core::Interval through = unshadowedRatio<ThroughOccluders>();
   EXPECT_LT(through.low, 1);
   EXPECT_GT(through.high, 1);
   EXPECT_LT(through.halfWidth(), 0.01);

@@ -106,14 +106,7 @@ TEST(Invariance, RadianceTimesAPowerOfTwoIsThatInEveryBit) {
 /// Sum over pixels of the unshadowed light by a light sample and a BSDF sample; converted: the BSDF's density per solid
 /// angle becomes one in the light's measure before it joins the other's.
 double unshadowed(const core::Moment& now, std::uint32_t image, bool converted) {
-  constexpr core::LightFeatures kFeatures{false, false};
-  double sum = 0;
-  for (std::uint32_t i = 0; i < tests::kPixels; ++i) {
-    const core::Surface& surface = now.surfaces.at(i);
-    if (!surface.hit()) continue;
-    const restir::Target<kFeatures> target(surface, now.cameraPosition, *now.lights);
-    core::Rng rng(1, core::Pass::lab, i, image);
-    restir::ReservoirBuilder builder;
+  return tests::unshadowedSum(now, image, [&](const auto& target, const auto& surface, auto& rng, auto& builder) {
     const auto add = [&](const core::LightSample& y) {
       const core::Incident in = target.incident(y);
       if (!(core::maxComponent(in.flux()) > 0)) return;
@@ -124,10 +117,7 @@ double unshadowed(const core::Moment& now, std::uint32_t image, bool converted) 
     const core::BsdfSample s = target.bsdf().sample(rng.uniform3());
     const vec3 origin = core::offsetOrigin(surface.position, surface.geometricNormal);
     if (s.pdf > 0) restir::ThroughOccluders()(*now.tracer, *now.lights, origin, s.direction, add);
-    const restir::Reservoir r = builder.finish(1, 0);
-    if (r.unbiasedWeight > 0) sum += r.unbiasedWeight * target(r.sample);
-  }
-  return sum;
+  });
 }
 
 TEST(Invariance, DensitiesOfTwoMeasuresMustNotBeMixed) {

@@ -69,17 +69,11 @@ TEST(Restir, MotionOfLightOccluderAndCameraLeavesItUnbiased) {
     expectUnbiased(World(tests::makeWorld(motion), kFrames), wide(), 768);
 }
 
-/// Counts 0, 1, 2 and 4, by pixel and frame; the last frame has samples everywhere, so that all of it is shaded.
-float patchwork(int frame, int x, int y, const vec3&) {
-  static constexpr std::array<float, 5> kCounts{0, 1, 0, 4, 2};
-  return frame == kFrames - 1 ? 1.0f : kCounts[(x + 2 * y + 3 * frame) % 5];
-}
-
 TEST(Restir, CountsThatVaryAndVanishLeaveItUnbiased) {
   Motion motion;
   motion.light = vec3(0.2f, 0, 0.05f);
   const World world(tests::makeWorld(motion), kFrames);
-  expectUnbiased(world, wide(), 768, {patchwork, {}, {}});
+  expectUnbiased(world, wide(), 768, {tests::patchwork(kFrames), {}, {}});
 }
 
 /// A frame of samples, then none while a lamp rises from below the floor, then one.
@@ -151,31 +145,25 @@ TEST(Restir, MeanOfManyResultsIsTheMeanOfOne) {
   EXPECT_LT(many.total.variance(), 0.7 * one.total.variance());
 }
 
-bool sameBits(const core::Planes& a, const core::Planes& b) {
-  for (int c = 0; c < 3; ++c)
-    if (std::memcmp(a.view().plane[c].data, b.view().plane[c].data, sizeof(float) * tests::kPixels) != 0) return false;
-  return true;
-}
-
 core::Planes imageOf(const World& world, const RestirParameters& p, int tile = core::kDefaultTile) {
   core::Planes image(tests::kWidth, tests::kHeight);
-  tests::renderSequence(world, p, {patchwork, {}, {}}, 3, image, tile);
+  tests::renderSequence(world, p, {tests::patchwork(kFrames), {}, {}}, 3, image, tile);
   return image;
 }
 
 TEST(Restir, BitsDependNeitherOnThreadsNorOnTiles) {
   const World world(tests::makeWorld({vec3(0.1f), vec3(0), vec3(0.02f)}, true), kFrames);
   const core::Planes image = imageOf(world, wide());
-  for (int tile : {1, 5, 64}) EXPECT_TRUE(sameBits(image, imageOf(world, wide(), tile)));
+  for (int tile : {1, 5, 64}) EXPECT_TRUE(tests::sameBits(image, imageOf(world, wide(), tile)));
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  EXPECT_TRUE(sameBits(image, imageOf(world, wide())));
+  EXPECT_TRUE(tests::sameBits(image, imageOf(world, wide())));
 }
 
 TEST(Restir, KernelsForEverythingGiveTheSameBits) {
   const World world(tests::makeWorld(), kFrames);
   RestirParameters all = wide();
   all.features = restir::Features::all;
-  EXPECT_TRUE(sameBits(imageOf(world, wide()), imageOf(world, all)));
+  EXPECT_TRUE(tests::sameBits(imageOf(world, wide()), imageOf(world, all)));
 }
 
 /// Renders frames by hand with one count everywhere each.

@@ -3,8 +3,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -233,6 +235,45 @@ inline Estimate reference(const World& world, int images = 64, int samples = 102
 inline double zOf(const core::RunningMoments& a, const core::RunningMoments& b) {
   const double variance = a.meanVariance() + b.meanVariance();
   return variance > 0 ? (a.mean() - b.mean()) / std::sqrt(variance) : a.mean() == b.mean() ? 0 : 1e9;
+}
+
+/// Sum of the pixels' variances.
+inline double totalVariance(const Estimate& e) {
+  double sum = 0;
+  for (const auto& p : e.pixels) sum += p.variance();
+  return sum;
+}
+
+inline bool sameBits(const core::Planes& a, const core::Planes& b) {
+  for (int c = 0; c < 3; ++c)
+    if (std::memcmp(a.view().plane[c].data, b.view().plane[c].data, sizeof(float) * kPixels) != 0) return false;
+  return true;
+}
+
+/// Counts 0, 1, 2 and 4, by pixel and frame; 1 in the last of `frames`, so that all of it is shaded.
+inline auto patchwork(int frames) {
+  return [frames](int frame, int x, int y, const vec3&) {
+    static constexpr std::array<float, 5> kCounts{0, 1, 0, 4, 2};
+    return frame == frames - 1 ? 1.0f : kCounts[(x + 2 * y + 3 * frame) % 5];
+  };
+}
+
+/// Sum over pixels of W p-hat of fresh reservoirs, an unbiased estimate of the unshadowed light of triangles.
+/// fill(target, surface, rng, builder) adds a pixel's candidates; image: one set of random numbers.
+template <class Fill>
+double unshadowedSum(const core::Moment& now, std::uint32_t image, Fill&& fill) {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < kPixels; ++i) {
+    const core::Surface& surface = now.surfaces.at(i);
+    if (!surface.hit()) continue;
+    const restir::Target<core::LightFeatures{false, false}> target(surface, now.cameraPosition, *now.lights);
+    core::Rng rng(1, core::Pass::lab, i, image);
+    restir::ReservoirBuilder builder;
+    fill(target, surface, rng, builder);
+    const restir::Reservoir r = builder.finish(1, 0);
+    if (r.unbiasedWeight > 0) sum += r.unbiasedWeight * target(r.sample);
+  }
+  return sum;
 }
 
 /// How an estimate compares with the reference.

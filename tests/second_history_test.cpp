@@ -106,18 +106,12 @@ TEST(SecondHistory, WeightsAreCountsAlone) {
   EXPECT_GT(differ, 50) << "control: measured weights depend on samples";
 }
 
-double variance(const tests::Estimate& e) {
-  double sum = 0;
-  for (const auto& p : e.pixels) sum += p.variance();
-  return sum;
-}
-
 TEST(SecondHistory, TwoThatForgetAlikeAreQuieterThanOne) {
   const auto still = world(false);
   RestirParameters one = with(SecondBlend::mean, 20);
-  const double both = variance(estimateOf(still, one, 200));
+  const double both = tests::totalVariance(estimateOf(still, one, 200));
   one.second.on = false;
-  EXPECT_LT(both, 0.95 * variance(estimateOf(still, one, 200)));
+  EXPECT_LT(both, 0.95 * tests::totalVariance(estimateOf(still, one, 200)));
 }
 
 }  // namespace

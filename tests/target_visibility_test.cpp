@@ -76,11 +76,7 @@ TEST(TargetVisibility, MovingOccludersNeedTheGeometryThatWas) {
 
 /// Counts 0, 1, 2 and 4; reservoirs that wait remember the geometry that they saw.
 TEST(TargetVisibility, CountsThatVaryAndVanishLeaveItUnbiased) {
-  const auto patchwork = [](int frame, int x, int y, const vec3&) {
-    static constexpr std::array<float, 5> kCounts{0, 1, 0, 4, 2};
-    return frame == kFrames - 1 ? 1.0f : kCounts[(x + 2 * y + 3 * frame) % 5];
-  };
-  expectUnbiased(World(tests::makeWorld(ofOccluder()), kFrames), seeing(), 1024, {patchwork, {}, {}});
+  expectUnbiased(World(tests::makeWorld(ofOccluder()), kFrames), seeing(), 1024, {tests::patchwork(kFrames), {}, {}});
 }
 
 /// Shadow rays written back into history, every frame: a hidden sample becomes a null sample.

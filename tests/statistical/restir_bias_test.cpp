@@ -32,11 +32,6 @@ RestirParameters wide(Reuse reuse, Mis mis = Mis::balance) {
   return p;
 }
 
-float patchwork(int frame, int x, int y, const vec3&) {
-  static constexpr std::array<float, 5> kCounts{0, 1, 0, 4, 2};
-  return frame == kFrames - 1 ? 1.0f : kCounts[(x + 2 * y + 3 * frame) % 5];
-}
-
 void expectUnbiased(const char* name, const World& world, const RestirParameters& p, const Hooks& hooks = {}) {
   const auto c = tests::compare(tests::estimate(world, p, kSequences, hooks), tests::reference(world, 64, 2048));
   std::printf("%-24s ratio %.4f +- %.4f, z %.2f, worst pixel %.2f\n", name, c.ratio, c.detectable / kLargestZ * 1.96,
@@ -75,7 +70,8 @@ TEST(RestirBias, RisingLightAfterFramesWithoutSamples) {
   Motion motion;
   motion.light = vec3(0.05f, 0.3f, 0.05f);
   motion.lightStart = vec3(-0.2f, -1.9f, -0.2f);
-  expectUnbiased("light rises, n varies", World(tests::makeWorld(motion), kFrames), wide(Reuse::both), {patchwork, {}});
+  expectUnbiased("light rises, n varies", World(tests::makeWorld(motion), kFrames), wide(Reuse::both),
+                 {tests::patchwork(kFrames), {}});
 }
 
 TEST(RestirBias, MovingOccluder) {
