@@ -25,18 +25,18 @@ void beginFrame(const Frame& frame, bool geometry, RestirState& state) {
 }
 
 template <LightFeatures F>
-Reservoir drawPixel(const RestirParameters& p, const Frame& frame, const LightTiles& tiles, int x, int y) {
+Reservoir drawPixel(const RestirParameters& p, const Frame& frame, const RestirState& state, int x, int y) {
   const Surface& surface = frame.now.surfaces(x, y);
   const int batches = surface.hit() ? batchesOf(frame.samples(x, y)) : 0;
   ReservoirBuilder builder;
   if (batches > 0) {
     const Target<F> target = partsOf(frame, x, y).target<F>();
-    const Candidates<F> candidates(target, surface, *frame.now.tracer, p.candidates, batches, tiles.of(x, y));
-    for (int i = 0; i < batches; ++i) {
-      core::Rng rng(frame.seed, core::Pass::candidates, pixelIndex(frame, x, y), frame.now.frame,
-                    static_cast<std::uint32_t>(i));
-      candidates.addBatch(rng, builder);
-    }
+    const Candidates<F> candidates(target, surface, *frame.now.tracer, p.candidates, batches, state.lightTiles.of(x, y),
+                                   state.lightChoice.get());
+    builder = candidates.draw([&](int i) -> core::Rng {
+      return {frame.seed, core::Pass::candidates, pixelIndex(frame, x, y), frame.now.frame,
+              static_cast<std::uint32_t>(i)};
+    });
   }
   const float confidence = twohistory::freshWeight(p.temporal.policy, frame.samples(x, y));
   Reservoir r = builder.finish(confidence, frame.now.frame);
@@ -47,15 +47,15 @@ Reservoir drawPixel(const RestirParameters& p, const Frame& frame, const LightTi
   return r;
 }
 
-core::LightSampler samplerOf(WithoutReuse without) {
-  if (without == WithoutReuse::uniform) return core::LightSampler::uniform;
-  return without == WithoutReuse::tree ? core::LightSampler::tree : core::LightSampler::power;
+core::LightSampler samplerOf(const RestirParameters& p) {
+  if (!drawsLights(p) || p.withoutReuse == WithoutReuse::tree) return core::LightSampler::tree;
+  return p.withoutReuse == WithoutReuse::uniform ? core::LightSampler::uniform : core::LightSampler::power;
 }
 
 void prepareLightChoice(const RestirParameters& p, const Frame& frame, RestirState& state) {
   if (state.lightChoice && state.drawnLights == frame.now.lights) return;
   state.drawnLights = frame.now.lights;
-  state.lightChoice = std::make_shared<core::LightChoice>(*frame.now.lights, samplerOf(p.withoutReuse));
+  state.lightChoice = std::make_shared<core::LightChoice>(*frame.now.lights, samplerOf(p));
 }
 
 }  // namespace
@@ -76,7 +76,8 @@ void shareCandidates(const RestirParameters& p, const Frame& frame, const Restir
 
 void drawCandidates(const RestirParameters& p, const Frame& frame, RestirState& state) {
   beginFrame(frame, p.targetVisibility, state);
-  if (drawsLights(p)) return prepareLightChoice(p, frame, state);
+  if (drawsLights(p) || p.candidates.treeSamples > 0) prepareLightChoice(p, frame, state);
+  if (drawsLights(p)) return;
   state.lightTiles.fill(p.candidates.lightTiles, *frame.now.lights, lightFeatures(p, frame),
                         std::int64_t{frame.samples.width} * frame.samples.height * p.candidates.lightSamples,
                         frame.seed, frame.now.frame);
@@ -84,7 +85,7 @@ void drawCandidates(const RestirParameters& p, const Frame& frame, RestirState& 
   withLightFeatures(p, frame, [&]<LightFeatures F>() {
     core::forEachPixel(
         frame.samples.width, frame.samples.height,
-        [&](int x, int y) { state.fresh(x, y) = drawPixel<F>(p, frame, state.lightTiles, x, y); }, frame.tile);
+        [&](int x, int y) { state.fresh(x, y) = drawPixel<F>(p, frame, state, x, y); }, frame.tile);
   });
 }
 

@@ -39,6 +39,8 @@ class ReservoirBuilder {
   /// What is chosen so far, and its target.
   const LightSample& sample() const { return sample_; }
   float target() const { return target_; }
+  /// Sum of the weights: p-hat W of what is chosen.
+  double sum() const { return sum_; }
 
   /// W = factor times sum of w / p-hat(y).
   Reservoir finish(float confidence, std::uint32_t frame, double factor = 1) const {

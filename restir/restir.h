@@ -114,8 +114,9 @@ struct RestirState {
   PastMoments past;
   bool waitsBefore = false, waits = false;  ///< some pixel of the frame had n = 0
   std::int64_t bad = 0;
-  std::shared_ptr<const Lights> drawnLights;             ///< what lightChoice draws from
-  std::shared_ptr<const core::LightChoice> lightChoice;  ///< null unless a baseline draws lights
+  std::shared_ptr<const Lights> drawnLights;  ///< what lightChoice draws from
+  std::shared_ptr<const core::LightChoice>
+      lightChoice;  ///< null unless a baseline draws lights, or there are tree samples
 };
 
 /// True where a baseline takes the place of reservoirs.
@@ -148,6 +149,7 @@ void describe(V& v, CandidateParameters& p) {
   v.choice("lightTiles", p.lightTiles,
            {{"auto", TileUse::automatic}, {"always", TileUse::always}, {"never", TileUse::never}},
            "light samples from tiles that blocks of pixels share; auto: where lights outgrow the cache");
+  v("treeSamples", p.treeSamples, "samples a batch from a light tree, which knows what is near", 0, 4096);
 }
 
 template <class V>

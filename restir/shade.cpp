@@ -35,10 +35,8 @@ vec3 shadeSample(const Pixel<F, kVisibility>& pixel, const Reservoir& r, bool kn
 template <LightFeatures F, bool kVisibility>
 Reservoir drawBatch(const Pixel<F, kVisibility>& pixel, int result) {
   const Candidates<F> candidates(pixel.target, pixel.surface, *pixel.frame.now.tracer, pixel.parameters.candidates, 1,
-                                 pixel.state.lightTiles.of(pixel.at.x, pixel.at.y));
-  core::Rng rng = pixel.rng(core::Pass::candidates, result);
-  ReservoirBuilder builder;
-  candidates.addBatch(rng, builder);
+                                 pixel.state.lightTiles.of(pixel.at.x, pixel.at.y), pixel.state.lightChoice.get());
+  const ReservoirBuilder builder = candidates.draw([&](int) { return pixel.rng(core::Pass::candidates, result); });
   return builder.finish(1, pixel.frame.now.frame);
 }
 

@@ -55,6 +55,17 @@ TEST(Restir, ContributionAndPairwiseAreUnbiased) {
   for (Mis mis : {Mis::contribution, Mis::pairwise}) expectUnbiased(world, wide(Reuse::both, mis), 1024);
 }
 
+TEST(Restir, TreeSamplesLeaveItUnbiasedUnderMovingLights) {
+  Motion m;
+  m.light = vec3(0.1f, 0, 0.03f);
+  const World world(tests::makeWorld(m, true), kFrames);
+  for (Reuse reuse : {Reuse::none, Reuse::both}) {
+    RestirParameters p = wide(reuse);
+    p.candidates.treeSamples = 2, p.candidates.lightSamples = 2, p.candidates.bsdfSamples = 0.25;
+    expectUnbiased(world, p, 768, {tests::patchwork(kFrames), {}});
+  }
+}
+
 TEST(Restir, ConstantWeightsAreBiasedInSpace) {
   const World world(tests::makeWorld(), kFrames);
   expectBiased(world, wide(Reuse::spatial, Mis::constant), 512);

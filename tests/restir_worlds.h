@@ -170,21 +170,33 @@ inline void renderSequence(const World& world, restir::RestirParameters p, const
   blank(hooks.compared, out);
 }
 
-/// Means over independent sequences: of every pixel's luminance in the last frame, and of the frame's sum.
+/// Means over independent sequences: of every pixel's luminance in the last frame, of sums over square cells of pixels,
+/// and of the frame's sum.
 struct Estimate {
-  explicit Estimate(int count = kPixels) : pixels(count) {}
+  explicit Estimate(int w = kWidth, int h = kHeight, int c = 1)
+      : pixels(w * h), cells((w / c) * (h / c)), width(w), cell(c) {}
 
-  std::vector<core::RunningMoments> pixels;
+  std::vector<core::RunningMoments> pixels, cells;
   core::RunningMoments total;
+  int width, cell;  ///< cell: pixels on its side; divides the image's
 
   void add(const core::Planes& image) {
     double sum = 0;
+    std::vector<double> inCell(cells.size());
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const double l = core::luminance(image.view().at(static_cast<std::int32_t>(i)));
       pixels[i].add(l);
       sum += l;
+      const std::size_t x = i % width / cell, y = i / width / cell;
+      inCell[y * (width / cell) + x] += l;
     }
+    for (std::size_t i = 0; i < cells.size(); ++i) cells[i].add(inCell[i]);
     total.add(sum);
+  }
+  void merge(const Estimate& other) {
+    for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i].merge(other.pixels[i]);
+    for (std::size_t i = 0; i < cells.size(); ++i) cells[i].merge(other.cells[i]);
+    total.merge(other.total);
   }
 };
 
@@ -198,10 +210,10 @@ inline double detectableBias(double usual) { return usual / std::sqrt(thoroughne
 
 /// Sequences of seeds firstSeed, ...; batches of them run in parallel and are added in order.
 inline Estimate estimate(const World& world, const restir::RestirParameters& p, int count, const Hooks& hooks = {},
-                         std::uint64_t firstSeed = 1) {
+                         std::uint64_t firstSeed = 1, int cell = 1) {
   constexpr int kBatch = 16;
   count *= thoroughness();
-  Estimate result(world.width() * world.height());
+  Estimate result(world.width(), world.height(), cell);
   std::vector<core::Planes> images(kBatch);
   for (int first = 0; first < count; first += kBatch) {
     const int size = std::min(kBatch, count - first);
@@ -216,9 +228,9 @@ inline Estimate estimate(const World& world, const restir::RestirParameters& p, 
 
 /// The last frame by light sampling without reuse: `images` independent images of `samples` a pixel.
 inline Estimate reference(const World& world, int images = 64, int samples = 1024,
-                          const std::function<bool(int, int)>& compared = {}) {
+                          const std::function<bool(int, int)>& compared = {}, int cell = 1) {
   const core::Moment now = world.moment(world.frames() - 1);
-  Estimate result(world.width() * world.height());
+  Estimate result(world.width(), world.height(), cell);
   core::Planes image(world.width(), world.height());
   images *= thoroughness();
   for (int i = 0; i < images; ++i) {
@@ -280,13 +292,13 @@ double unshadowedSum(const core::Moment& now, std::uint32_t image, Fill&& fill) 
 struct Comparison {
   double ratio;       ///< of the frames' sums
   double z;           ///< of the frames' sums
-  double worst;       ///< largest |z| of a pixel
+  double worst;       ///< largest |z| of a cell; cells are pixels but where a test says otherwise
   double detectable;  ///< relative bias of the sum that a test at 1e-6 detects half of the time
 };
 inline Comparison compare(const Estimate& test, const Estimate& truth) {
   Comparison c{test.total.mean() / truth.total.mean(), zOf(test.total, truth.total), 0, 0};
-  for (std::size_t i = 0; i < test.pixels.size(); ++i)
-    c.worst = std::max(c.worst, std::abs(zOf(test.pixels[i], truth.pixels[i])));
+  for (std::size_t i = 0; i < test.cells.size(); ++i)
+    c.worst = std::max(c.worst, std::abs(zOf(test.cells[i], truth.cells[i])));
   c.detectable = core::sidakBound(1, 1e-6) * std::sqrt(test.total.meanVariance() + truth.total.meanVariance()) /
                  truth.total.mean();
   return c;

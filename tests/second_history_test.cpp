@@ -56,7 +56,7 @@ core::Planes render(const tests::World& world, RestirParameters p, std::uint64_t
 }
 
 tests::Estimate estimateOf(const tests::World& world, const RestirParameters& p, int sequences) {
-  tests::Estimate e(world.width() * world.height());
+  tests::Estimate e(world.width(), world.height());
   std::vector<core::Planes> images(sequences);
   tbb::parallel_for(0, sequences, [&](int i) { images[i] = render(world, p, static_cast<std::uint64_t>(i + 1)); });
   for (const auto& image : images) e.add(image);
