@@ -3,13 +3,14 @@
 // Significance 1e-6 a test, seeds 1, 2, ...; the smallest bias of a frame's light that is detected half of the time is
 // 1 %, and single pixels are tested by Sidak's bound. Constant weights must fail.
 // TWOFOLD_SEQUENCES=4096 renders that many sequences of every mode for the table of bias and variance, which is
-// printed; TWOFOLD_SCALE=4 makes its images that many times as wide and high, and then tests cells of 4 x 4 pixels in
-// place of pixels: the rarest samples of a single pixel there (contribution weights, visibility in the target) are too
-// few for a mean of thousands to be normal.
+// printed; TWOFOLD_MODES=contribution only of those that have that in their name. TWOFOLD_SCALE=4 makes its images that
+// many times as wide and high, and then tests cells of 4 x 4 pixels in place of pixels: the rarest samples of a single
+// pixel there (contribution weights, visibility in the target) are too few for a mean of thousands to be normal.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 #include "tests/restir_worlds.h"
 
@@ -192,7 +193,10 @@ void tabulate(const char* worldName, const World& world, const Mode& mode, const
 void tabulateAll(const char* worldName, const Motion& motion) {
   const World world = tableWorld(motion);
   const Estimate truth = tests::reference(world, 64, tableScale() > 1 ? 512 : 2048, {}, tableScale());
-  for (const Mode& mode : kModes) tabulate(worldName, world, mode, truth);
+  const char* wanted = std::getenv("TWOFOLD_MODES");
+  for (const Mode& mode : kModes)
+    if (std::string_view(mode.name).find(wanted ? wanted : "") != std::string_view::npos)
+      tabulate(worldName, world, mode, truth);
 }
 
 TEST(RestirBias, TableOfEveryModeStill) { tabulateAll("still", {}); }
