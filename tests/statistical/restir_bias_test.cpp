@@ -194,9 +194,11 @@ void tabulateAll(const char* worldName, const Motion& motion) {
   const World world = tableWorld(motion);
   const Estimate truth = tests::reference(world, 64, tableScale() > 1 ? 512 : 2048, {}, tableScale());
   const char* wanted = std::getenv("TWOFOLD_MODES");
+  int rows = 0;
   for (const Mode& mode : kModes)
     if (std::string_view(mode.name).find(wanted ? wanted : "") != std::string_view::npos)
-      tabulate(worldName, world, mode, truth);
+      tabulate(worldName, world, mode, truth), ++rows;
+  EXPECT_GT(rows, 0) << "no mode has TWOFOLD_MODES in its name";
 }
 
 TEST(RestirBias, TableOfEveryModeStill) { tabulateAll("still", {}); }
