@@ -84,7 +84,9 @@ class Candidates {
         total_(total),
         tile_(tile),
         treeSamples_(parameters.treeSamples),
-        tree_(tree) {}
+        tree_(tree) {
+    CHECK(treeSamples_ == 0 || tree_ != nullptr);
+  }
 
   /// Every batch, batch i from random numbers rngOf(i).
   template <class RngOf>
