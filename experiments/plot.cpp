@@ -77,12 +77,15 @@ std::string open(double width, double height, const std::string& label) {
 std::string polyline(const LinePlot& plot, const Line& line, const Axis& x, const Axis& y) {
   std::string path, marks;
   bool pen = false;
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < line.x.size(); ++i) points += drawable(plot, line, i);
+  const int radius = points == 1 ? 4 : 2;  // without a line beside it a small point is overlooked
   for (std::size_t i = 0; i < line.x.size(); ++i) {
     const bool shown = drawable(plot, line, i);
     if (shown) {
       const double px = x.at(line.x[i]), py = y.at(line.y[i]);
       path += fmt::format("{}{:.1f} {:.1f}", pen ? "L" : "M", px, py);
-      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\"/>", px, py);
+      marks += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", px, py, radius);
       if (hasWhisker(plot, line, i))
         marks += fmt::format("<path class=\"whisker\" d=\"M{0:.1f} {1:.1f}L{0:.1f} {2:.1f}\"/>", px, y.at(line.low[i]),
                              y.at(line.high[i]));

@@ -109,7 +109,10 @@ TEST(Plot, LeavesGapsWhereALogarithmHasNoValue) {
   EXPECT_EQ(count(svg, "nan"), 0u);
   EXPECT_EQ(count(svg, "inf"), 0u);
   EXPECT_EQ(svgLinePlot({"t", "x", "y", true, {{"a", 0, {0}, {-1}}}}), "");
-  EXPECT_EQ(count(svgLinePlot({"t", "x", "y", true, {{"a", 0, {5}, {2}}}}), "<circle"), 1u);  // a single point
+  const std::string single = svgLinePlot({"t", "x", "y", true, {{"a", 0, {5}, {2}}}});
+  EXPECT_EQ(count(single, "<circle"), 1u);
+  EXPECT_EQ(count(single, "r=\"4\""), 1u);  // a single point is larger, as no line leads to it
+  EXPECT_EQ(count(svg, "r=\"4\""), 0u);
   EXPECT_EQ(count(svgLinePlot({"t", "x", "y", false, {{"a", 0, {5}, {0}}}}), "nan"), 0u);
   EXPECT_EQ(count(svgLinePlot({"t", "x", "y", false, {{"point a", 0, {5}, {0}}}, true}), ">point a<"), 1u);
 }
