@@ -9,6 +9,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "core/check.h"
 #include "twohistory/ledger.h"
 
 namespace twohistory {
@@ -47,6 +48,7 @@ inline std::uint32_t ditherOf(std::ptrdiff_t pixel, std::uint32_t frame) {
 template <int K>
 class PackedLedger {
  public:
+  static constexpr bool kKnowsTwins = true;
   PackedLedger() = default;
   PackedLedger(const Ledger<K>& l, std::uint32_t dither) {
     float reference = l.weight[0];
@@ -128,6 +130,7 @@ class PackedLedger {
 template <int K>
 class PlainLedger {
  public:
+  static constexpr bool kKnowsTwins = false;
   PlainLedger() = default;
   PlainLedger(const Ledger<K>& l, std::uint32_t) : ledger_(l) {}
   operator Ledger<K>() const { return ledger_; }
@@ -137,7 +140,10 @@ class PlainLedger {
   std::uint16_t ratioCode() const { return 0; }
   void markTwin() {}
   void unmarkTwin() {}
-  static PlainLedger twin(const Ledger<1>&, std::uint16_t, std::uint32_t) { return {}; }  // never asked for
+  static PlainLedger twin(const Ledger<1>&, std::uint16_t, std::uint32_t) {
+    CHECK(kKnowsTwins);
+    return {};
+  }
 
  private:
   Ledger<K> ledger_;

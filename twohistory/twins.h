@@ -46,8 +46,8 @@ class TwinTiles {
 /// Whether the pair can have twins: frames and samples, with one decay that keeps weights far from any cap.
 inline bool canBeTwins(const Policies<2>& p) {
   const auto decays = [](const Policy& q) { return q.forgetting == Forgetting::decay && q.amount <= 0.999; };
-  return p[0].weighting == Weighting::frames && p[1].weighting == Weighting::samples && decays(p[0]) && decays(p[1]) &&
-         p[0].amount == p[1].amount;
+  return StoredLedger<2>::kKnowsTwins && p[0].weighting == Weighting::frames && p[1].weighting == Weighting::samples &&
+         decays(p[0]) && decays(p[1]) && p[0].amount == p[1].amount;
 }
 
 inline constexpr std::uint16_t kNoTwin = 0xffff;  ///< in place of a ratio W_1 / W_0
