@@ -20,6 +20,7 @@
 // W is an unbiased estimate of 1 / density (reservoir.h), so the sum over both has the mean it would have had.
 #pragma once
 
+#include "core/check.h"
 #include "core/light_choice.h"
 #include "core/tracer.h"
 #include "restir/light_tiles.h"

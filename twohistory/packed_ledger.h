@@ -48,7 +48,8 @@ inline std::uint32_t ditherOf(std::ptrdiff_t pixel, std::uint32_t frame) {
 template <int K>
 class PackedLedger {
  public:
-  static constexpr bool kKnowsTwins = true;
+  static constexpr bool kKnowsTwins = true;  ///< whether markTwin() and twin() mean anything
+
   PackedLedger() = default;
   PackedLedger(const Ledger<K>& l, std::uint32_t dither) {
     float reference = l.weight[0];
@@ -131,6 +132,7 @@ template <int K>
 class PlainLedger {
  public:
   static constexpr bool kKnowsTwins = false;
+
   PlainLedger() = default;
   PlainLedger(const Ledger<K>& l, std::uint32_t) : ledger_(l) {}
   operator Ledger<K>() const { return ledger_; }

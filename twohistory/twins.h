@@ -43,7 +43,8 @@ class TwinTiles {
   core::Image<std::uint8_t> tiles_;
 };
 
-/// Whether the pair can have twins: frames and samples, with one decay that keeps weights far from any cap.
+/// Whether the pair can have twins: frames and samples, with one decay that keeps weights far from any cap, in a layout
+/// that can mark them.
 inline bool canBeTwins(const Policies<2>& p) {
   const auto decays = [](const Policy& q) { return q.forgetting == Forgetting::decay && q.amount <= 0.999; };
   return StoredLedger<2>::kKnowsTwins && p[0].weighting == Weighting::frames && p[1].weighting == Weighting::samples &&
