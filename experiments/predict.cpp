@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <sstream>
 
@@ -20,25 +21,30 @@ constexpr double kFewest = 1e-6, kMost = 1e9;  ///< samples in one frame, beyond
 constexpr int kFrames = 0, kSamples = 1;  ///< histories of the pair
 int historyOf(Weighting w) { return w == Weighting::frames ? kFrames : kSamples; }
 
+/// The decimal number that a word is; NaN where it is none.
+double numberIn(const std::string& word) {
+  double x = core::kNaN;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), x);
+  return error == std::errc() && end == word.data() + word.size() ? x : core::kNaN;
+}
+
 double parseCount(const std::string& word, const std::string& where) {
-  double n = core::kNaN;
-  std::size_t used = 0;
-  try {
-    n = std::stod(word, &used);
-  } catch (const std::exception&) {
-    used = 0;
-  }
-  if (used == word.size() && (n == 0 || (n >= kFewest && n <= kMost))) return std::abs(n);
+  const double n = numberIn(word);
+  if (n == 0 || (n >= kFewest && n <= kMost)) return std::abs(n);
   throw core::UsageError(where, fmt::format("\"{}\" is not a sample count", word.substr(0, 40)),
                          fmt::format("give 0 or numbers from {:g} to {:g}", kFewest, kMost));
 }
 
 }  // namespace
 
-Prediction::Prediction(double decay) : decay_(decay) {
-  if (!(decay >= 0 && decay <= 1))
-    throw core::UsageError("--decay", fmt::format("{} is outside [0, 1]", decay), "give the share kept every frame");
+double parseDecay(const std::string& text, const std::string& where) {
+  const double decay = numberIn(text);
+  if (decay >= 0 && decay <= 1) return decay;
+  throw core::UsageError(where, fmt::format("\"{}\" is not a number in [0, 1]", text.substr(0, 40)),
+                         "give the share kept every frame");
 }
+
+Prediction::Prediction(double decay) : decay_(decay) { CHECK(decay >= 0 && decay <= 1); }
 
 void Prediction::advance(double n) {
   const double fresh[] = {twohistory::freshWeight(Weighting::frames, n),

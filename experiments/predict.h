@@ -13,7 +13,7 @@ namespace experiments {
 /// The two histories of one pixel, followed in double precision.
 class Prediction {
  public:
-  /// decay in [0, 1]; throws core::UsageError otherwise.
+  /// decay in [0, 1].
   explicit Prediction(double decay);
   /// One frame of n >= 0 samples.
   void advance(double n);
@@ -37,6 +37,9 @@ class Prediction {
 
 /// The frame just advanced to, as `twofold predict` prints it; numbers that are not known are null.
 Json predictionJson(const Prediction& prediction, double n);
+
+/// A decay in [0, 1], as a decimal number and nothing else. Throws core::UsageError that starts with `where`.
+double parseDecay(const std::string& text, const std::string& where);
 
 /// Counts separated by commas, spaces or lines (nothing between two commas is an error): each 0 or within [1e-6, 1e9].
 /// Throws core::UsageError that starts with `where`.

@@ -14,8 +14,7 @@ namespace experiments {
 namespace {
 
 struct PredictArguments {
-  double decay = 0;
-  std::string counts, file;
+  std::string decay, counts, file;
   bool countsGiven = false, fileGiven = false;
 };
 
@@ -37,7 +36,7 @@ std::vector<double> countsOf(const PredictArguments& arguments) {
 }
 
 void predict(const PredictArguments& arguments) {
-  Prediction prediction(arguments.decay);
+  Prediction prediction(parseDecay(arguments.decay, "--decay"));
   const std::vector<double> counts = countsOf(arguments);
   fmt::print("{{\"frames\": [");
   for (std::size_t i = 0; i < counts.size(); ++i) {

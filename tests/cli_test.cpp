@@ -103,9 +103,10 @@ TEST_F(Cli, PredictRefusesBadInput) {
   write("empty.txt", "\n");
   for (const std::string bad :
        {"--decay 1.5 --counts 1", "--decay -0.5 --counts 1", "--decay=-0.5 --counts 1", "--decay nan --counts 1",
-        "--decay inf --counts 1", "--decay x --counts 1", "--decay 0.9 --counts 1,-1", "--decay 0.9 --counts=-1",
-        "--decay 0.9 --counts nan", "--decay 0.9 --counts inf", "--decay 0.9 --counts ''", "--decay 0.9 --counts 1,,1",
-        "--decay 0.9", "--counts 1"})
+        "--decay inf --counts 1", "--decay x --counts 1", "--decay '' --counts 1", "--decay 0x1p-1 --counts 1",
+        "--decay '0.5 ' --counts 1", "--decay 0.9 --counts 0x10", "--decay 0.9 --counts 1e400",
+        "--decay 0.9 --counts 1,-1", "--decay 0.9 --counts=-1", "--decay 0.9 --counts nan", "--decay 0.9 --counts inf",
+        "--decay 0.9 --counts ''", "--decay 0.9 --counts 1,,1", "--decay 0.9", "--counts 1"})
     expectUsageError("predict " + bad);
   expectUsageError("predict --decay 0.9 --counts 1 --counts-file '" + file("counts.txt") + "'", "both");
   for (const char* name : {"words.txt", "empty.txt", "absent.txt", ""})

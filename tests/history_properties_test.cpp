@@ -196,27 +196,77 @@ TEST(Blends, OfThreeHistoriesSumToOneWithinTheirLimits) {
   }
 }
 
+/// What three histories of a schedule are from frame `first` on; `resetAt`: the frame that finds nothing where it was.
+struct Remembered {
+  Ledger<3> ledger;
+  std::array<float, 3> value{};
+};
+
+Remembered remember(const Schedule& s, int first, int resetAt) {
+  const twohistory::Mean<float> mean;
+  core::Image<Ledger<3>> ledger(1, 1);
+  std::array<core::Image<float>, 3> value;
+  value.fill(core::Image<float>(1, 1, 0.0f));
+  for (int f = first; f < static_cast<int>(s.counts.size()); ++f) {
+    const twohistory::Taps taps = f == first || f == resetAt ? twohistory::Taps{} : twohistory::stillTap(0);
+    const twohistory::Recall<3> recall(taps, core::In<Ledger<3>>(ledger), s.policies, static_cast<float>(s.counts[f]));
+    for (int j = 0; j < 3; ++j) {
+      const twohistory::Step step = recall.step(j, {0, 0});
+      value[j](0, 0) = mean.merge(mean.gather(core::In<float>(value[j]), step), 1.0f / static_cast<float>(f + 1), step);
+    }
+    ledger(0, 0) = recall.now;
+  }
+  return {ledger(0, 0), {value[0](0, 0), value[1](0, 0), value[2](0, 0)}};
+}
+
+bool sameBits(const Remembered& a, const Remembered& b) {
+  return sameBits(a.ledger, b.ledger) && sameBits(a.value, b.value);
+}
+
 TEST(Bookkeeping, AResetIsAFreshStart) {
+  int differs = 0;  // control: without the reset
   for (std::uint32_t i = 0; i < kSchedules; ++i) {
     const Schedule s = randomSchedule(i);
-    core::Image<Ledger<3>> before(1, 1, ledgerOf<float>(s));
-    const auto n = static_cast<float>(s.counts.back());
-    const Ledger<3> reset = advance(gather<3, float>({}, before), s.policies, n);
-    ASSERT_TRUE(sameBits(reset, advance(Ledger<3>{}, s.policies, n))) << "schedule " << i;
+    core::Rng rng(27, core::Pass::other, i, 0);
+    const int reset = static_cast<int>(rng.below(static_cast<std::uint32_t>(s.counts.size())));
+    const Remembered fresh = remember(s, reset, reset);
+    ASSERT_TRUE(sameBits(remember(s, 0, reset), fresh)) << "schedule " << i << ", frame " << reset;
+    differs += !sameBits(remember(s, 0, 0), fresh);
   }
+  EXPECT_GT(differs, static_cast<int>(kSchedules / 2));
 }
 
 TEST(Bookkeeping, DoesNotDependOnTheOrderOfTaps) {
+  const auto near = [](float a, float b) { return std::abs(a - b) <= 2e-6f * a; };
+  const twohistory::Mean<float> mean;
+  int moved = 0;  // control: the same weights on other taps
   for (std::uint32_t i = 0; i < kSchedules; ++i) {
     core::Rng rng(25, core::Pass::other, i, 0);
     core::Image<Ledger<3>> before(4, 1);
-    for (int k = 0; k < 4; ++k) before(k, 0) = ledgerOf<float>(randomSchedule(i + static_cast<std::uint32_t>(k)));
-    twohistory::Taps taps{{0, 1, 2, 3}, {rng.uniform(), rng.uniform(), rng.uniform(), rng.uniform()}};
-    twohistory::Taps turned{{2, 3, 0, 1}, {taps.b[2], taps.b[3], taps.b[0], taps.b[1]}};
+    core::Image<float> value(4, 1);
+    for (int k = 0; k < 4; ++k) {
+      before(k, 0) = ledgerOf<float>(randomSchedule(i + static_cast<std::uint32_t>(k)));
+      value(k, 0) = rng.uniform();
+    }
+    std::array<int, 4> order{0, 1, 2, 3};
+    for (int k = 3; k > 0; --k) std::swap(order[k], order[rng.below(static_cast<std::uint32_t>(k) + 1)]);
+    twohistory::Taps taps{{0, 1, 2, 3}, {rng.uniform(), rng.uniform(), rng.uniform(), rng.uniform()}}, turned, other;
+    for (int k = 0; k < 4; ++k) {
+      turned.pixel[k] = order[k], turned.b[k] = taps.b[order[k]];
+      other.pixel[k] = order[k], other.b[k] = taps.b[k];
+    }
+    const auto valueOf = [&](const twohistory::Taps& t) {
+      twohistory::Step step;
+      step.taps = twohistory::premultiplied<3>(t, before.view(), 1);
+      return mean.gather(value.view(), step);
+    };
     const Ledger<3> a = gather<3, float>(taps, before), b = gather<3, float>(turned, before);
-    for (int j = 0; j < 3; ++j) ASSERT_NEAR(a.weight[j], b.weight[j], 1e-6f * a.weight[j]);
-    for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_NEAR(a.powerSums[j], b.powerSums[j], 1e-6f * a.powerSums[j]);
+    for (int j = 0; j < 3; ++j) ASSERT_TRUE(near(a.weight[j], b.weight[j]) && near(a.ageSum[j], b.ageSum[j]));
+    for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_TRUE(near(a.powerSums[j], b.powerSums[j]));
+    ASSERT_TRUE(near(valueOf(taps), valueOf(turned))) << "schedule " << i;
+    moved += !near(a.ageSum[2], gather<3, float>(other, before).ageSum[2]);
   }
+  EXPECT_GT(moved, static_cast<int>(kSchedules / 2));
 }
 
 TEST(Bookkeeping, ConstantCountsMakeBothWeightingsOneHistory) {
@@ -240,6 +290,19 @@ TEST(Bookkeeping, ConstantCountsMakeBothWeightingsOneHistory) {
     ASSERT_NEAR(l.age(0), l.age(1), exact ? 0 : 1e-5f * (1 + l.age(0)));
     ASSERT_NEAR(l.covariance(0, 0), l.covariance(1, 1), exact ? 0 : 1e-5f * l.covariance(0, 0));
   }
+}
+
+TEST(Bookkeeping, ConstantCountsMakeBothWeightingsOneHistoryForAMillionFrames) {
+  for (const int n : {1, 8, 64, 4096, 8192})
+    for (const double decay : {0.999, 1.0}) {
+      const Policies<2> both{Policy{Weighting::frames, Forgetting::decay, decay},
+                             Policy{Weighting::samples, Forgetting::decay, decay}};
+      Ledger<2> l;
+      for (int f = 0; f < 5'000'000; ++f) l = advance(l, both, static_cast<float>(n));  // heavier than 2^22
+      EXPECT_EQ(l.age(0), l.age(1)) << n << ", " << decay;
+      EXPECT_EQ(l.covariance(0, 0), l.covariance(1, 1)) << n << ", " << decay;
+      EXPECT_EQ(l.weight[1], l.weight[0] * static_cast<float>(n)) << n << ", " << decay;
+    }
 }
 
 }  // namespace

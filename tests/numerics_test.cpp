@@ -67,6 +67,22 @@ TEST(LongRuns, NaiveHalfAveragesStallAndFloatOnesArrive) {
   EXPECT_NEAR(full, 1, 1e-5f);
 }
 
+/// One history in double by its definition, with the limit that a float history needs.
+struct InDouble {
+  double weight = 0, ageSum = 0, powerSum = 0;
+  void step(const Policy& p, double n) {
+    const double fresh = n > 0 ? (p.weighting == Weighting::samples ? n : 1) : 0;
+    double kept = p.forgetting == Forgetting::decay ? p.amount : 1;
+    if (fresh > 0 && weight > 0) {
+      if (p.forgetting == Forgetting::relativeCap) kept = std::min(kept, p.amount * fresh / weight);
+      if (p.forgetting == Forgetting::absoluteCap) kept = std::min(kept, p.amount / weight);
+      kept = std::min(kept, 0x1p22 * fresh / weight);
+    }
+    ageSum = kept * (ageSum + weight), weight = kept * weight + fresh;
+    powerSum = kept * kept * powerSum + (n > 0 ? fresh * fresh / n : 0);
+  }
+};
+
 TEST(LongRuns, AMillionFramesOfEveryPolicyAgreeWithDouble) {
   for (const Policy& p :
        {kU, kW, Policy{Weighting::frames, Forgetting::decay, 0.5}, Policy{Weighting::samples, Forgetting::decay, 0.999},
@@ -74,20 +90,59 @@ TEST(LongRuns, AMillionFramesOfEveryPolicyAgreeWithDouble) {
         Policy{Weighting::samples, Forgetting::relativeCap, 20}, Policy{Weighting::frames, Forgetting::absoluteCap, 64},
         Policy{Weighting::samples, Forgetting::decay, 0}, Policy{Weighting::frames, Forgetting::none, 0}}) {
     Ledger<1> l;
-    Ledger<1, double> exact;
+    InDouble exact;
     core::Rng rng(31, core::Pass::other, 0, 0);
     const std::array<int, 8> counts{1, 8, 0, 2, 64, 1, 1, 4096};
     for (int i = 0; i < 1'000'000; ++i) {
       const int n = counts[rng.below(counts.size())];
       l = advance(l, {p}, static_cast<float>(n));
-      exact = advance(exact, {p}, static_cast<double>(n));
+      exact.step(p, n);
+      if (i % 1000 != 999 || !(exact.weight > 0)) continue;
+      ASSERT_NEAR(l.weight[0], exact.weight, 1e-3 * exact.weight) << i;
+      ASSERT_NEAR(l.age(0), exact.ageSum / exact.weight, 1e-3 * (1 + exact.ageSum / exact.weight)) << i;
+      const double covariance = exact.powerSum / (exact.weight * exact.weight);
+      ASSERT_NEAR(l.covariance(0, 0), covariance, 2e-3 * covariance) << i;
     }
-    const bool bounded =
-        p.forgetting != Forgetting::none && p.amount != 1;  // without forgetting, float forgets what exceeds 2^22
-    EXPECT_NEAR(l.weight[0], exact.weight[0], bounded ? 1e-4 * exact.weight[0] : exact.weight[0]);
-    EXPECT_NEAR(l.covariance(0, 0), exact.covariance(0, 0), bounded ? 1e-3 * exact.covariance(0, 0) : 1);
-    EXPECT_TRUE(std::isfinite(l.age(0)));
   }
+}
+
+TEST(NoSamples, MergedAtWeightOneAreBlackAndOursStay) {
+  const twohistory::Mean<float> mean;
+  Ledger<1> l, wrong;
+  float ours = 0, naive = 0;
+  for (int i = 0; i < 200; ++i) {
+    const float n = i % 2 == 0 ? 1.0f : 0.0f, x = n > 0 ? 1.0f : 0.0f;  // no sample: black
+    const auto change = advanceOf(l, {kU}, n), all = advanceOf(wrong, {kU}, 1.0f);
+    Step step;
+    step.kept = change.factor[0] * l.weight[0], step.fresh = change.fresh[0];
+    ours = mean.merge(ours, x, step);
+    step.kept = all.factor[0] * wrong.weight[0], step.fresh = all.fresh[0];
+    naive = mean.merge(naive, x, step);
+    l = advance(l, change, n), wrong = advance(wrong, all, 1.0f);
+  }
+  EXPECT_NEAR(ours, 1, 1e-6f);
+  EXPECT_LT(naive, 0.6f);
+}
+
+/// What is left of a history without forgetting after 2^24 + 2^20 frames of one sample: its weight, and how far a step
+/// of the signal from 0 to 1 in the last 2^20 of them got. cap: whether the weight is one that the ledger allows.
+std::pair<float, float> afterAStep(bool cap) {
+  const Policy forever{Weighting::frames, Forgetting::none, 0};
+  Ledger<1> l;
+  float naiveWeight = 0, mean = 0;
+  for (int i = 0; i < (1 << 24) + (1 << 20); ++i) {
+    l = advance(l, {forever}, 1.0f), naiveWeight += 1;
+    const float x = i < (1 << 24) ? 0.0f : 1.0f;
+    mean += 1 / (cap ? l.weight[0] : naiveWeight) * (x - mean);
+  }
+  return {cap ? l.weight[0] : naiveWeight, mean};
+}
+
+TEST(LongRuns, WithoutForgettingNaiveSumsStallAndOursStayWhereFramesCount) {
+  const auto naive = afterAStep(false), ours = afterAStep(true);
+  EXPECT_EQ(naive.first, 0x1p24f);  // one more frame is no longer counted: nobody chose this memory
+  EXPECT_EQ(ours.first, 0x1p22f + 1);
+  EXPECT_NEAR(ours.second, 1 - std::exp(-0.25), 1e-3);  // an average over 2^22 frames, as the ledger says
 }
 
 TEST(UnequalTaps, NaiveMixingOfMeansClaimsTwentyTimesTooLittleVariance) {
@@ -137,6 +192,15 @@ TEST(NegativeVariance, NaiveDifferenceOfSquaresGoesBelowZeroAndInnovationsDoNot)
   }
   EXPECT_LT(lowest, 0);
   EXPECT_NEAR(m.sampleVariance, 0.05f * 0.05f / 12, 0.5f * 0.05f * 0.05f / 12);
+}
+
+TEST(Denormals, SquaredWeightsUnderflowWhereDividingTwiceDoesNot) {
+  // A pixel last seen 1,000 frames ago: one sample, decay 0.95.
+  Ledger<1> l = advance(Ledger<1>{}, {kU}, 1.0f);
+  for (int i = 0; i < 1000; ++i) l = advance(l, {kU}, 0.0f);
+  const float naive = l.powerSums[0] / (l.weight[0] * l.weight[0]);
+  EXPECT_FALSE(naive > 0.5f && naive < 2);
+  EXPECT_NEAR(l.weight[0], std::pow(0.95, 1000), 1e-25);
 }
 
 TEST(Denormals, LeaveBlendsFiniteAndInRange) {

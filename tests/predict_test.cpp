@@ -172,7 +172,8 @@ TEST(Predict, CountsAreReadStrictly) {
 }
 
 TEST(Predict, DecayIsCheckedStrictly) {
-  for (const double wrong : {-0.1, 1.1, std::nan(""), HUGE_VAL}) EXPECT_THROW(Prediction{wrong}, core::UsageError);
+  for (const char* wrong : {"-0.1", "1.1", "nan", "inf", "", "0.5x", "0x1p-1", "half"})
+    EXPECT_THROW(experiments::parseDecay(wrong, "x"), core::UsageError) << wrong;
 }
 
 }  // namespace

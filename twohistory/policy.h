@@ -38,8 +38,8 @@ void describe(V& v, Policy& p) {
   v("amount", p.amount, "decay a frame in [0, 1], or the cap", 0.0, 1e9);
 }
 
-/// A history heavier than this would no longer feel a fresh weight of 1 (a float stalls at 2^24), so it forgets the
-/// rest.
+/// A history heavier than so many fresh weights would no longer feel the next (a float stalls at 2^24), so it forgets
+/// the rest. A fresh weight below 1 counts as 1: one faint frame must not erase a history.
 template <class Real>
 inline constexpr Real kHeaviest = std::is_same_v<Real, float> ? Real(0x1p22) : Real(0x1p51);
 
@@ -65,7 +65,7 @@ Real forgetFactor(Forgetting forgetting, double amount, Real w, Real fresh) {
   if (forgetting == Forgetting::decay) factor = static_cast<Real>(amount);
   if (forgetting == Forgetting::relativeCap && fresh > 0) factor = capAt(static_cast<Real>(amount) * fresh);
   if (forgetting == Forgetting::absoluteCap && fresh > 0) factor = capAt(static_cast<Real>(amount));
-  return std::min(factor, capAt(kHeaviest<Real>));
+  return fresh > 0 ? std::min(factor, capAt(kHeaviest<Real> * std::max(Real(1), fresh))) : factor;
 }
 
 }  // namespace twohistory

@@ -43,8 +43,8 @@ class TwinTiles {
   core::Image<std::uint8_t> tiles_;
 };
 
-/// Whether the pair can have twins: frames and samples, with one decay that keeps weights far from any cap, in a layout
-/// that can mark them.
+/// Whether the pair can have twins: frames and samples, with one decay that keeps weights far from kHeaviest, in a
+/// layout that can mark them.
 inline bool canBeTwins(const Policies<2>& p) {
   const auto decays = [](const Policy& q) { return q.forgetting == Forgetting::decay && q.amount <= 0.999; };
   return StoredLedger<2>::kKnowsTwins && p[0].weighting == Weighting::frames && p[1].weighting == Weighting::samples &&
@@ -78,7 +78,7 @@ inline std::uint16_t ratioBefore(const Taps& taps, In<StoredLedger<2>> before) {
 inline std::uint16_t twinRatio(const Taps& taps, In<StoredLedger<2>> before, float n) {
   const std::uint16_t ratio = taps.valid() ? ratioBefore(taps, before) : small_float::pack(n, 0);
   if (ratio == 0 && n == 0) return 0;
-  constexpr float kMost = 4096;  // heavier weights than 4096 / (1 - 0.999) would be capped
+  constexpr float kMost = 4096;  // as many as twins were tested with
   const bool stays =
       small_float::isPowerOfTwo(ratio) && ((n == 0) | ((small_float::unpack(ratio) == n) & (n <= kMost)));
   return stays ? ratio : kNoTwin;
