@@ -21,7 +21,7 @@ enum class Told { samples, confidence, effective };
 inline float effectiveCount(float n, float rho, const twohistory::Ledger<1>& ledger, float fresh) {
   if (!(n > 0 && fresh > 0)) return 0;
   const float kept = std::max(0.0f, ledger.weight[0] - fresh);
-  return 1 / (rho * (1 + 2 * kept / fresh) + (1 - rho) / n);
+  return 1 / (rho * (1 + 2 * kept / fresh) + (1 - rho) / n);  // [told]
 }
 
 }  // namespace restir

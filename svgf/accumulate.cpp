@@ -68,7 +68,6 @@ std::int64_t dropBadSamples(PlanesView<const float> radiance, In<float> n, Image
   }));
 }
 
-// [clamp]
 template <int K>
 double clampFireflies(const FilterParameters& parameters, In<Taps> taps, PlanesView<const float> radiance,
                       PlanesView<const float> albedo, FilterState<K>& s) {
@@ -88,7 +87,7 @@ double clampFireflies(const FilterParameters& parameters, In<Taps> taps, PlanesV
     const Moments m = MomentsMerge{}.gather(before, recall.step(0, {x, y}));
     if (m.innovations < parameters.spatialBelow) return 0.0;
     const float deviation = std::sqrt(m.sampleVariance * (1 / n + recall.gathered.covariance(0, 0)));
-    const float limit = m.mean + parameters.fireflyClamp * deviation;
+    const float limit = m.mean + parameters.fireflyClamp * deviation;  // [clamp]
     if (!(luminance > limit)) return 0.0;
     const vec3 kept = limit / luminance * colour;
     out.store(x, y, kept);

@@ -60,6 +60,19 @@ TEST(LeastVarianceWeight, RegretOfFloatArithmeticIsBelow1e5) {
   EXPECT_LE(worst, 1e-5);
 }
 
+TEST(LeastVarianceWeight, HasNextToNoRegretAtConstantCounts) {
+  double worst = 0;
+  for (const double decay : {0.5, 0.8, 0.9, 0.95})
+    for (int n = 1; n <= 4096; n = n < 64 ? n + 1 : n + n / 7)
+      for (const int length : {1, 10, 300}) {
+        const std::vector<int> counts(length, n);
+        const float p = leastVarianceWeight(twohistory::pairOf(pairLedger<float>(counts, decay), 0, 1));
+        const Truth truth(counts, decay);
+        worst = std::max(worst, static_cast<double>(truth.blend(p) / truth.best() - 1));
+      }
+  EXPECT_LE(worst, 1e-9);
+}
+
 TEST(LeastVarianceWeight, ControlCancellingDenominatorFails) {
   // V_u - 2 C + V_w by subtraction, as one would write it first: at constant counts it is rounding noise.
   int outside = 0;

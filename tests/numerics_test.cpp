@@ -2,11 +2,11 @@
 //
 //   constant n                         combination_test (ControlCancellingDenominatorFails), history_properties_test
 //   decay of the power sums            ledger_test (ControlConstantDecayOfPowerSumsIsCaught)
-//   decay 1 over 10^6 frames           ledger_test (AMillionFramesWithoutForgetting...)
+//   decay 1, long runs                 LongRuns, below, and history_properties_test (...ForAMillionFrames)
 //   E[x^2] - m^2                       filter_test (InnovationsSurviveWhereSquaresCancel)
 //   variance floor                     VarianceFloor, below, and filter_test (IsInvariantToRadianceScale)
 //   not finite input                   filter_test (TreatsNotFiniteRadianceAsAFrameWithoutSamples), and below
-//   firefly                            Fireflies, below
+//   firefly                            Fireflies, below; the clamp is off by default, and costs energy where it is on
 //   half storage, memory               packed_ledger_test
 //   reset                              Reset, below, and history_properties_test (AResetIsAFreshStart)
 #include <gtest/gtest.h>

@@ -45,7 +45,7 @@ struct Sink {
     float left = 0;
     for (int j = 0; j < K; ++j) left += lambda[j] * lag[j];
     if (!(correction > 0) || !(brightness > 0) || left == 0) return 0;
-    return std::clamp(-correction * left / brightness, -1.0f, 8.0f);
+    return std::clamp(-correction * left / brightness, -1.0f, 8.0f);  // [blend residual]
   }
 
   /// Takes back of the blend's weights what earlier checks refuted, and books them for the next check. Returns q.
@@ -93,7 +93,7 @@ float seedWeight(const Histories<K>& h, const Ledger<K>& ledger, const BlendPara
   const float deviation = std::sqrt(own > 0 ? h.variance(x, y) * first / own : h.variance(x, y));
   const float gradient = luminance(glm::abs(h.gradient.load(x, y)));
   const float q = gradient < deviation ? gradient / deviation : (gradient > 0 ? 1.0f : 0.0f);
-  return optimal + q * (1 - optimal);
+  return optimal + q * (1 - optimal);  // [blend seed]
 }
 
 /// [blend oracle] p in [0, 1] that minimises |p X_1 + (1 - p) X_2 - r|^2 over RGB.
@@ -102,7 +102,7 @@ float oracleWeight(const Histories<K>& h, const BlendParameters& p, int x, int y
   const vec3 second = h.colour[p.pair[1]].load(x, y), step = h.colour[p.pair[0]].load(x, y) - second;
   const float length2 = dot(step, step);
   if (!(length2 > 0)) return 1;
-  return std::clamp(dot(h.target.load(x, y) - second, step) / length2, 0.0f, 1.0f);
+  return std::clamp(dot(h.target.load(x, y) - second, step) / length2, 0.0f, 1.0f);  // [blend oracle]
 }
 
 template <int K>

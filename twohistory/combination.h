@@ -42,7 +42,7 @@ Real leastVarianceWeight(const PairCovariance<Real>& c) {
   const Real a = c.gainOfFirst(), b = c.gainOfSecond();
   if (!(b > 0)) return 1;
   if (!(a > 0)) return 0;
-  return a / (a + b);
+  return a / (a + b);  // [blend opt]
 }
 
 /// [blend published] p as the slides' headline prints it, S_0 and S_1 in each other's places; for reproduction only.
@@ -54,7 +54,7 @@ Real publishedWeight(const Ledger<K, Real>& l, int first, int second) {
              s1 = l.powerSums[pairIndex<K>(second, second)];
   const Real denominator = wu * wu * s1 - 2 * wu * ww * s1 + ww * ww * sMinus;
   if (denominator == 0) return 1;
-  return std::clamp((wu * wu * s0 - wu * ww * s1) / denominator, Real(0), Real(1));
+  return std::clamp((wu * wu * s0 - wu * ww * s1) / denominator, Real(0), Real(1));  // [blend published]
 }
 
 /// [blend consistent] p = (A + kappa) / (A + B + kappa): least variance plus squared difference from the first
@@ -63,7 +63,7 @@ template <class Real>
 Real consistentWeight(const PairCovariance<Real>& c, Real kappa) {
   const Real a = std::max(Real(0), c.gainOfFirst()), b = std::max(Real(0), c.gainOfSecond());
   if (!(b > 0) || !(kappa < std::numeric_limits<Real>::infinity())) return 1;
-  return (a + kappa) / (a + b + kappa);
+  return (a + kappa) / (a + b + kappa);  // [blend consistent]
 }
 
 /// Squared drift per frame in units of s2 [blend G2]: max(0, D^2 - noise2) / (a_1 - a_2)^2, 0 where the ages differ by
@@ -71,7 +71,7 @@ Real consistentWeight(const PairCovariance<Real>& c, Real kappa) {
 template <class Real>
 Real squaredDrift(Real excess, Real firstAge, Real secondAge) {
   const Real gap = firstAge - secondAge;
-  return std::abs(gap) < Real(1e-3) ? Real(0) : excess / (gap * gap);
+  return std::abs(gap) < Real(1e-3) ? Real(0) : excess / (gap * gap);  // [blend G2]
 }
 
 /// [blend lag, two] p = (M_22 - M_12) / (M_11 - 2 M_12 + M_22) with M_jk = C_jk + g a_j a_k, written without
@@ -79,7 +79,7 @@ Real squaredDrift(Real excess, Real firstAge, Real secondAge) {
 template <class Real>
 Real lagWeight(const PairCovariance<Real>& c, Real firstAge, Real secondAge, Real g) {
   const Real gap = secondAge - firstAge;
-  const Real numerator = c.gainOfFirst() + g * secondAge * gap;
+  const Real numerator = c.gainOfFirst() + g * secondAge * gap;  // [blend lag, two]
   const Real denominator = c.gainOfFirst() + c.gainOfSecond() + g * gap * gap;
   return denominator > Real(1e-6) * (c.first + c.second) ? numerator / denominator : Real(1);
 }

@@ -28,7 +28,9 @@ struct DriftRow {
   std::array<DifferenceSums, kMost> of;
 
   /// [blend D] mean of the k-th difference over the window.
-  float mean(int k, int i) const { return weight[i] > 0 ? of[k].difference[i] / weight[i] : 0; }
+  float mean(int k, int i) const {
+    return weight[i] > 0 ? of[k].difference[i] / weight[i] : 0;  // [blend D]
+  }
   /// Window mean of s2.
   float meanSampleVariance(int i) const { return weight[i] > 0 ? sampleVariance[i] / weight[i] : 0; }
   /// Window mean of lum(X_0).
@@ -36,7 +38,9 @@ struct DriftRow {
   /// Variance of the difference over the window.
   float spread(int k, int i) const;
   /// [blend noise2] predicted variance of mean().
-  float predictedNoise(int k, int i) const { return weight[i] > 0 ? of[k].noise[i] / (weight[i] * weight[i]) : 0; }
+  float predictedNoise(int k, int i) const {
+    return weight[i] > 0 ? of[k].noise[i] / (weight[i] * weight[i]) : 0;  // [blend noise2]
+  }
   /// Largest of the prediction, spread() / (N - 1), and the variance of the mean of four quadrant means.
   float safeNoise(int k, int i) const;
 };

@@ -41,8 +41,8 @@ struct WindowEvidence {
 /// [blend D] the window's mean of difference k, with its noise taken off what it differs from `expected` by.
 inline float shrunkMean(const DriftRow& row, int k, int i, bool measuredNoise, float expected) {
   const float rest = row.mean(k, i) - expected;
-  const float noise2 = measuredNoise ? row.safeNoise(k, i) : row.predictedNoise(k, i);  // [blend noise2]
-  return expected + std::copysign(std::sqrt(std::max(0.0f, rest * rest - noise2)), rest);
+  const float noise2 = measuredNoise ? row.safeNoise(k, i) : row.predictedNoise(k, i);     // [blend noise2]
+  return expected + std::copysign(std::sqrt(std::max(0.0f, rest * rest - noise2)), rest);  // [blend trend]
 }
 
 /// [blend bias] b_j = D_j + b_r with D_j the mean difference from the reference, shrunk by its noise, and
@@ -61,7 +61,7 @@ WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, c
   for (int k = 0; k < K - 1; ++k) {
     const int j = a.of[k];
     const float gap = ledger.age(j) - ledger.age(a.reference);
-    const float shrunk = shrunkMean(row, k, i, measuredNoise, trend[k] * gap * row.meanBrightness(i));  // [blend trend]
+    const float shrunk = shrunkMean(row, k, i, measuredNoise, trend[k] * gap * row.meanBrightness(i));
     e.bias[j] = std::copysign(std::min(cappedRatio(std::abs(shrunk), deviation), 1e3f), shrunk);
     slope += e.bias[j] * gap, gaps += gap * gap, longest = std::max(longest, gap);
     const float predicted = s2 * pairOf(ledger, j, a.reference).difference();
@@ -76,8 +76,8 @@ WindowEvidence<K> windowEvidence(const Ledger<K>& ledger, const Against<K>& a, c
 }
 
 /// [blend lag] with M = kappa C + rho b b', rho the share of b b' that nothing takes away later. A slower history may
-/// get a negative weight, down to `lowest`, in proportion to the evidence of its bias (b_j^2 over its variance, at most
-/// 1); the reference never.
+/// get a negative weight, down to [blend limit], in proportion to the evidence of its bias (b_j^2 over its variance, at
+/// most 1); the reference never.
 template <int K>
 std::array<float, K> lagWeights(const Ledger<K>& ledger, const Against<K>& a, const WindowEvidence<K>& e, float rho,
                                 float lowest) {
@@ -86,9 +86,10 @@ std::array<float, K> lagWeights(const Ledger<K>& ledger, const Against<K>& a, co
   for (int j = 0; j < K; ++j) {
     const float variance = e.noise * m[j][j];
     for (int k = 0; k < K; ++k) m[j][k] = e.noise * m[j][k] + rho * e.bias[j] * e.bias[k];
-    if (j != a.reference) limit[j] = lowest * std::min(1.0f, cappedRatio(e.bias[j] * e.bias[j], variance));
+    if (j != a.reference)
+      limit[j] = lowest * std::min(1.0f, cappedRatio(e.bias[j] * e.bias[j], variance));  // [blend limit]
   }
-  return leastErrorWeights<K, float>(m, limit);
+  return leastErrorWeights<K, float>(m, limit);  // [blend lag]
 }
 
 }  // namespace twohistory

@@ -45,7 +45,7 @@ struct Ledger {
   /// [ledger 4] in units of s2; 0 where a history is empty.
   Real covariance(int g, int h) const {
     if (!(weight[g] > 0 && weight[h] > 0)) return 0;
-    return powerSums[pairIndex<K>(g, h)] / weight[g] / weight[h];  // the product of two small weights could underflow
+    return powerSums[pairIndex<K>(g, h)] / weight[g] / weight[h];  // [ledger 4]; W_g W_h could underflow
   }
 };
 
@@ -88,8 +88,8 @@ Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Policies<K>& poli
   return advance(gathered, advanceOf(gathered, policies, n), n);
 }
 
-/// What the taps of the previous frame know. Weights and age sums are sums, so they mix with b; power sums
-/// mix with b^1.5, between b^2 (independent taps) and b (fully dependent ones): measured, see docs/decisions.md.
+/// What the taps of the previous frame know [ledger taps]. Weights and age sums are sums, so they mix with b; power
+/// sums mix with b^1.5, between b^2 (independent taps) and b (fully dependent ones): measured, see docs/decisions.md.
 /// before: anything whose at(index) is or becomes a Ledger<K, Real>.
 template <int K, class Real, class Before>
 Ledger<K, Real> gatherFrom(const Taps& taps, const Before& before) {
@@ -98,7 +98,7 @@ Ledger<K, Real> gatherFrom(const Taps& taps, const Before& before) {
     const Real b = taps.b[k];
     if (!(b > 0)) continue;
     const Ledger<K, Real>& tap = before.at(taps.pixel[k]);
-    const Real power = b * std::sqrt(b);
+    const Real power = b * std::sqrt(b);  // [ledger taps]
     for (int j = 0; j < K; ++j) {
       sum.weight[j] += b * tap.weight[j];
       sum.ageSum[j] += b * tap.ageSum[j];

@@ -16,7 +16,7 @@ double shrunkRatio(const std::array<Trend::Sums, 9>& tiles, int count) {
     squared += tiles[i].change * tiles[i].change / tiles[i].scale;
   }
   if (!(scale > 0)) return 0;
-  const double mean = change / scale, effective = scale * scale / scale2;
+  const double mean = change / scale, effective = scale * scale / scale2;  // [blend trend]
   if (!(effective > 1.5)) return 0;
   const double noise2 = std::max(0.0, squared / scale - mean * mean) / (effective - 1);
   return std::copysign(std::sqrt(std::max(0.0, mean * mean - noise2)), mean);

@@ -88,7 +88,6 @@ Vector leastInCube(const System& m, const Vector& right) {
 
 }  // namespace
 
-// [check theta]
 Shifts Evidence::solve(const ValidationParameters& p, float proven) const {
   Shifts result{1, 1, proven};
   const double residual = sum[kSums - 2], count = sum[kSums - 1];
@@ -98,11 +97,11 @@ Shifts Evidence::solve(const ValidationParameters& p, float proven) const {
   int next = kShifts;
   for (int j = 0; j < kShifts; ++j) {
     const double tau = static_cast<double>(j == kCorrection ? p.proof : p.trust);
-    const double prior = residual / count / (tau * tau);
+    const double prior = residual / count / (tau * tau);  // [check prior]
     right[j] = sum[j] + (j == kCorrection ? static_cast<double>(proven) : 1) * prior;
     for (int k = 0; k <= j; ++k) m[j][k] = m[k][j] = sum[next++] + (j == k ? prior : 0);
   }
-  const Vector theta = leastInCube(m, right);
+  const Vector theta = leastInCube(m, right);  // [check theta]
   std::transform(theta.begin(), theta.end(), result.begin(), [](double v) { return static_cast<float>(v); });
   return result;
 }
