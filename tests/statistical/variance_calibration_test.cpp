@@ -21,10 +21,13 @@ using twohistory::Policy;
 using twohistory::Taps;
 using twohistory::Weighting;
 
-constexpr int kWidth = 64, kHeight = 48, kFrames = 60, kSequences = 400, kMargin = 8, kHistories = 3;
-const twohistory::Policies<kHistories> kPolicies{Policy{Weighting::frames, twohistory::Forgetting::decay, 0.95},
-                                                 Policy{Weighting::samples, twohistory::Forgetting::decay, 0.95},
-                                                 Policy{Weighting::samples, twohistory::Forgetting::decay, 0.8}};
+constexpr int kWidth = 64, kHeight = 48, kFrames = 60, kSequences = 400, kMargin = 8, kHistories = 5;
+constexpr Policy decaying(Weighting weighting, double decay) {
+  return {weighting, twohistory::Forgetting::decay, decay};
+}
+const twohistory::Policies<kHistories> kPolicies{decaying(Weighting::frames, 0.95), decaying(Weighting::samples, 0.95),
+                                                 decaying(Weighting::samples, 0.8), decaying(Weighting::samples, 0.98),
+                                                 decaying(Weighting::samples, 0.6)};
 
 struct Motion {
   const char* name;
@@ -124,8 +127,9 @@ std::array<core::Image<float>, kHistories> simulate(const Course& c, std::uint64
       core::Rng rng(seed, core::Pass::lab, static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(f));
       x.data()[i] = std::sqrt(12 / c.counts[f].data()[i]) * (rng.uniform() - 0.5f);
     }
-    std::array<core::In<float>, kHistories> in{before[0], before[1], before[2]};
-    std::array<core::ImageView<float>, kHistories> out{now[0], now[1], now[2]};
+    std::array<core::In<float>, kHistories> in;
+    std::array<core::ImageView<float>, kHistories> out;
+    for (int j = 0; j < kHistories; ++j) in[j] = before[j], out[j] = now[j];
     twohistory::accumulate<kHistories>(c.taps[f].view(), c.counts[f].view(), kPolicies, ledger.view(), next.view(),
                                        twohistory::Mean<float>{}, in, x.view(), out);
     std::swap(before, now), std::swap(ledger, next);
@@ -136,13 +140,43 @@ std::array<core::Image<float>, kHistories> simulate(const Course& c, std::uint64
 /// Mean true over mean predicted variance; [combination][region: all, fovea, periphery], for both mixing rules.
 struct Calibration {
   double ratio[kHistories + 1][3], control[kHistories + 1][3];
+  double difference[2];  ///< of the window's mean, of U and of W .98
 };
+
+/// Mean over a window of 7x7 of the difference of history j and the reference F .6, as lag regression looks at it: mean
+/// true over mean predicted variance [blend noise2]; the prediction adds pixels up as if they were independent.
+constexpr int kReference = 4, kRadius = 3;
+
+double calibrateDifference(const Course& course, const std::vector<std::array<core::Image<float>, kHistories>>& all,
+                           int j) {
+  double truth = 0, claim = 0;
+  const auto overWindow = [](int x, int y, const auto& value) {
+    double sum = 0;
+    for (int v = y - kRadius; v <= y + kRadius; ++v)
+      for (int u = x - kRadius; u <= x + kRadius; ++u) sum += value(u, v);
+    return sum;
+  };
+  for (int y = kMargin; y < kHeight - kMargin; y += 2)
+    for (int x = kMargin; x < kWidth - kMargin; x += 2) {
+      claim += overWindow(x, y, [&](int u, int v) {
+        return static_cast<double>(twohistory::pairOf(course.ledger(u, v), j, kReference).difference());
+      });
+      for (const auto& h : all) {
+        const double d =
+            overWindow(x, y, [&](int u, int v) { return double(h[j](u, v)) - double(h[kReference](u, v)); });
+        truth += d * d / kSequences;
+      }
+    }
+  return truth / claim;
+}
 
 Calibration calibrate(const Motion& motion) {
   const Course course(motion);
   std::vector<std::array<core::Image<float>, kHistories>> all(kSequences);
   core::forEachIndex(kSequences, [&](std::size_t s) { all[s] = simulate(course, s + 1); });
   Calibration result;
+  result.difference[0] = calibrateDifference(course, all, 0),
+  result.difference[1] = calibrateDifference(course, all, 3);
   for (int which = 0; which <= kHistories; ++which) {
     double truth[3]{}, claim[3]{}, control[3]{};
     for (int y = kMargin; y < kHeight - kMargin; ++y)
@@ -166,13 +200,19 @@ Calibration calibrate(const Motion& motion) {
   return result;
 }
 
-constexpr const char* kCombination[] = {"U", "W", "F", "p_opt(U, W)"};
+constexpr const char* kCombination[] = {"U", "W", "F", "W .98", "F .6", "p_opt(U, W)"};
 
 void print(const Motion& m, const Calibration& c) {
   for (int k = 0; k <= kHistories; ++k)
     fmt::print("| {} | {} | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} / {:.2f} |\n", m.name, kCombination[k],
                c.ratio[k][0], c.ratio[k][1], c.ratio[k][2], c.control[k][0], c.control[k][1], c.control[k][2]);
+  fmt::print("| {} | mean difference from F .6 of U, of W .98 | {:.2f}, {:.2f} | |\n", m.name, c.difference[0],
+             c.difference[1]);
 }
+
+/// What the longest history, W .98, exceeds 1.25 by: half a pixel a frame outside the fovea makes neighbours so alike that
+/// b^1.5 is too little (docs/results.md, section 10).
+constexpr double kLongest = 1.35;
 
 void expectWithin(const Motion& m, double low, double high) {
   const Calibration c = calibrate(m);
@@ -180,11 +220,18 @@ void expectWithin(const Motion& m, double low, double high) {
   for (int k = 0; k <= kHistories; ++k)
     for (int r = 0; r < 3; ++r) {
       EXPECT_GT(c.ratio[k][r], low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(c.ratio[k][r], high) << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(c.ratio[k][r], k == 3 && high > 1.2 ? kLongest : high) << m.name << ", " << kCombination[k] << ", region " << r;
     }
 }
 
 TEST(PredictedVariance, OfAStillCameraIsWithinTwoPercent) { expectWithin({"still", vec2(0), 0, 0}, 0.98, 1.02); }
+TEST(PredictedVariance, OfAWindowsMeanDifferenceIsRightStillAndTooSmallWhereTapsMix) {
+  // Mixing taps makes pixels quieter and their neighbours alike, and a window's mean no quieter at all. So blends take
+  // measured spreads beside the prediction (twohistory/lag.h).
+  const Calibration still = calibrate({"still", vec2(0), 0, 0}), moving = calibrate({"0.5, 0.5", vec2(0.5f), 0, 0});
+  for (const double ratio : still.difference) EXPECT_NEAR(ratio, 1, 0.02);
+  for (const double ratio : moving.difference) EXPECT_GT(ratio, 1.25);
+}
 TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) { expectWithin({"1, 0", vec2(1, 0), 0, 0}, 0.98, 1.02); }
 TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
   for (const Motion& m : {Motion{"0.5, 0.5", vec2(0.5f), 0, 0}, Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0},
