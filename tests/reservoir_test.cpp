@@ -1,4 +1,5 @@
-// Reservoirs choose in proportion to weights, merging equals streaming, and no number breaks them.
+// Reservoirs choose in proportion to weights, and merging equals streaming. Smallest bias of a mean that is detected
+// half of the time: 1 %; every control has more.
 #include "restir/reservoir.h"
 
 #include <gtest/gtest.h>
@@ -6,10 +7,9 @@
 #include <numeric>
 #include <vector>
 
-#include "core/statistics.h"
 #include "restir/mis.h"
 #include "tests/chi_square.h"
-#include "twohistory/history.h"
+#include "tests/expect_mean.h"
 
 namespace {
 
@@ -19,7 +19,6 @@ using restir::Reservoir;
 using restir::ReservoirBuilder;
 
 constexpr double kSignificance = 1e-6;
-const double kLargestZ = core::sidakBound(1, kSignificance);
 
 core::Rng rngOf(std::uint32_t trial, std::uint64_t seed = 1) { return {seed, core::Pass::lab, trial, 0}; }
 
@@ -81,44 +80,69 @@ TEST(Reservoir, ChiSquareCatchesAReservoirThatFavoursItsLast) {
   EXPECT_LT(chiSquareOf(weights, 1'000'000, keep), kSignificance);
 }
 
-TEST(Reservoir, MergingIsStreaming) {
-  // Ten fixed candidates of one target: streamed, or split and merged with weights 1/M, in two splits and two orders.
-  const Table target{{3, 1, 4, 1, 5, 9, 2, 6, 5, 3}};
-  const std::vector<float> density{.1f, .2f, .05f, .05f, .1f, .1f, .1f, .1f, .1f, .1f};
+// Ten fixed candidates of one target: streamed, or split, and merged.
+const Table kTen{{3, 1, 4, 1, 5, 9, 2, 6, 5, 3}};
+const std::vector<float> kTenDensities{.1f, .2f, .05f, .05f, .1f, .1f, .1f, .1f, .1f, .1f};
+using Split = std::vector<std::vector<std::uint32_t>>;
+
+struct Merged {
+  double p;       ///< of what is kept, against streaming
+  double worstW;  ///< largest relative difference of p-hat W from streaming's, which is the same for whatever is kept
+};
+/// confidence: of a part of so many candidates.
+template <class Confidence>
+Merged mergedTen(const Split& split, Mis mis, int trials, Confidence&& confidence) {
   std::vector<float> weights(10);
-  for (int i = 0; i < 10; ++i) weights[i] = target.values[i] / density[i];
-  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  const auto part = [&](const std::vector<std::uint32_t>& indices, core::Rng& rng) {
-    ReservoirBuilder builder;
-    for (std::uint32_t i : indices)
-      builder.add({i, {}}, target.values[i], weights[i] / static_cast<double>(indices.size()), rng);
-    return builder.finish(static_cast<float>(indices.size()), 0);
-  };
-  const std::vector<std::vector<std::vector<std::uint32_t>>> splits{
-      {{0, 1, 2, 3, 4}, {5, 6, 7, 8, 9}}, {{9}, {1, 2, 3}, {0, 4, 5, 6, 7, 8}}, {{5, 7, 9}, {0, 1, 2, 3, 4, 6, 8}}};
-  for (const auto& split : splits)
-    for (Mis mis : {Mis::constant, Mis::contribution, Mis::balance}) {
-      const auto keep = [&](core::Rng& rng) {
-        std::vector<restir::Source<Table>> sources;
-        for (const auto& indices : split) sources.push_back({part(indices, rng), target});
-        const Reservoir r = restir::mergeReservoirs<Table>(sources, mis, 0, rng);
-        EXPECT_EQ(r.confidence, 10);
-        EXPECT_NEAR(r.unbiasedWeight * target(r.sample), sum / 10, 1e-5 * sum);  // streaming's W, exactly
-        return r.sample.light;
-      };
-      EXPECT_GT(chiSquareOf(weights, 100'000, keep), kSignificance);
+  for (int i = 0; i < 10; ++i) weights[i] = kTen.values[i] / kTenDensities[i];
+  const double mean = std::accumulate(weights.begin(), weights.end(), 0.0) / 10;
+  Merged merged{0, 0};
+  merged.p = chiSquareOf(weights, trials, [&](core::Rng& rng) {
+    std::vector<restir::Source<Table>> sources;
+    for (const auto& indices : split) {
+      ReservoirBuilder builder;
+      for (std::uint32_t i : indices)
+        builder.add({i, {}}, kTen.values[i], weights[i] / static_cast<double>(indices.size()), rng);
+      sources.push_back({builder.finish(confidence(indices.size()), 0), kTen});
     }
+    const Reservoir r = restir::mergeReservoirs<Table>(sources, mis, 0, rng);
+    merged.worstW = std::max(merged.worstW, std::abs(r.unbiasedWeight * kTen(r.sample) / mean - 1));
+    return r.sample.light;
+  });
+  return merged;
 }
 
-/// z of the mean of W g(y) against the sum of g over the target's support. spoil: factor on W as a function of how many
-/// of the M candidates had weight.
+const std::vector<Split> kSplits{
+    {{9}, {1, 2, 3}, {0, 4, 5, 6, 7, 8}}, {{5, 7, 9}, {0, 1, 2, 3, 4, 6, 8}}, {{0, 1, 2, 3, 4}, {5, 6, 7, 8, 9}}};
+
+TEST(Reservoir, MergingIsStreaming) {
+  constexpr int kTrials = 400'000;
+  for (const Split& split : kSplits)
+    for (Mis mis : {Mis::constant, Mis::contribution, Mis::balance}) {
+      const Merged m = mergedTen(split, mis, kTrials, [](std::size_t count) { return static_cast<float>(count); });
+      EXPECT_GT(m.p, kSignificance);
+      EXPECT_LT(m.worstW, 1e-5);
+    }
+  // What is kept too often or too seldom by 1 % adds trials (1 %)^2 to the nine that chi-square has in the mean.
+  EXPECT_LT(tests::upperGamma(4.5, 0.5 * (9 + kTrials * 1e-4)), kSignificance);
+}
+
+TEST(Reservoir, MergingByPartsInPlaceOfCandidatesIsNotStreaming) {
+  for (const Split& split : {kSplits[0], kSplits[1]}) {  // weights 1/k in place of M_i/M
+    const Merged m = mergedTen(split, Mis::constant, 100'000, [](std::size_t) { return 1.0f; });
+    EXPECT_LT(m.p, kSignificance);
+    EXPECT_GT(m.worstW, 0.01);
+  }
+}
+
+constexpr double kSumOfG = 1 + 2 + 3 + 4 + 0.5 + 2;
+
+/// W g(y), whose mean is the sum of g over the target's support. spoil: factor on W as a function of how many of the M
+/// candidates had weight.
 template <class Spoil>
-double zOfExpectation(Spoil&& spoil) {
-  const Table target{{2, 0, 1, 5, 0, 0.01f, 3, 1}};
+core::RunningMoments weightTimesFunction(Spoil&& spoil) {
+  const Table target{{2, 0, 1, 5, 0, 0.2f, 3, 1}};
   const std::vector<float> g{1, 100, 2, 3, 100, 4, 0.5f, 2};  // elsewhere than the target: no matter
-  constexpr int kCandidates = 4, kTrials = 400'000;
-  double exact = 0;
-  for (int i = 0; i < 8; ++i) exact += target.values[i] > 0 ? g[i] : 0;
+  constexpr int kCandidates = 4, kTrials = 2'000'000;
   core::RunningMoments moments;
   for (int t = 0; t < kTrials; ++t) {
     core::Rng rng = rngOf(t);
@@ -132,15 +156,15 @@ double zOfExpectation(Spoil&& spoil) {
     const Reservoir r = builder.finish(kCandidates, 0);
     moments.add(r.unbiasedWeight > 0 ? r.unbiasedWeight * g[r.sample.light] * spoil(valid, kCandidates) : 0.0);
   }
-  return (moments.mean() - exact) / std::sqrt(moments.meanVariance());
+  return moments;
 }
 
 TEST(Reservoir, WeightTimesFunctionIsItsSumOverTheSupport) {
-  EXPECT_LT(std::abs(zOfExpectation([](int, int) { return 1.0; })), kLargestZ);
+  tests::expectUnbiased(weightTimesFunction([](int, int) { return 1.0; }), kSumOfG);
 }
 
 TEST(Reservoir, ExpectationCatchesNullSamplesThatDoNotCount) {
-  EXPECT_GT(std::abs(zOfExpectation([](int valid, int all) { return double(all) / valid; })), kLargestZ);
+  tests::expectBiased(weightTimesFunction([](int valid, int all) { return double(all) / valid; }), kSumOfG);
 }
 
 /// A merge whose targets and confidences range widely; some are 0.
@@ -176,9 +200,11 @@ TEST(Mis, WeightsSumToOneOverWhoeverCanProduceASample) {
   EXPECT_GT(failedByConstant, 1000);
 }
 
-/// z of E[W g(y)] over two merges, one after the other, whose targets see different lights, against the sum of g over
-/// what the last canonical target sees.
-double zOfMerges(Mis mis) {
+constexpr double kSumAfterMerges = 1 + 2 + 30;
+
+/// W g(y) after two merges, one after the other, whose targets see different lights: its mean is the sum of g over what
+/// the last canonical target sees.
+core::RunningMoments afterMergesOfMerges(Mis mis) {
   const std::array<Table, 3> targets{{{{2, 0, 1, 5}}, {{0, 3, 1, 0}}, {{1, 4, 0, 0.1f}}}};
   const std::array<float, 4> g{1, 100, 2, 30};
   const auto fresh = [](const Table& target, int count, core::Rng& rng) {
@@ -190,7 +216,7 @@ double zOfMerges(Mis mis) {
     return builder.finish(static_cast<float>(count), 0);
   };
   core::RunningMoments moments;
-  for (int t = 0; t < 200'000; ++t) {
+  for (int t = 0; t < 500'000; ++t) {
     core::Rng rng = rngOf(t);
     const std::vector<restir::Source<Table>> first{{fresh(targets[1], 1, rng), targets[1]},
                                                    {fresh(targets[2], 3, rng), targets[2]}};
@@ -199,13 +225,13 @@ double zOfMerges(Mis mis) {
     const Reservoir r = restir::mergeReservoirs<Table>(second, mis, 0, rng);
     moments.add(r.unbiasedWeight > 0 ? r.unbiasedWeight * g[r.sample.light] : 0.0);
   }
-  return (moments.mean() - (1 + 2 + 30)) / std::sqrt(moments.meanVariance());
+  return moments;
 }
 
 TEST(Mis, WeightTimesFunctionIsItsSumAfterMergesOfMerges) {
   for (Mis mis : {Mis::contribution, Mis::balance, Mis::pairwise})
-    EXPECT_LT(std::abs(zOfMerges(mis)), kLargestZ) << static_cast<int>(mis);
-  EXPECT_GT(std::abs(zOfMerges(Mis::constant)), kLargestZ);
+    tests::expectUnbiased(afterMergesOfMerges(mis), kSumAfterMerges);
+  tests::expectBiased(afterMergesOfMerges(Mis::constant), kSumAfterMerges);
 }
 
 // A surface in a lamp's plane sees it by rounding alone: a target of 1e-16, which no candidate ever realises.
@@ -229,8 +255,8 @@ TEST(Mis, ContributionDoesNotCountWhoSeesASampleByRoundingAlone) {
                            restir::normalisation<Table>(Mis::contribution, sources, r.sample, targets[0](r.sample))
                      : 0.0);
   }
-  EXPECT_LT(std::abs(moments.mean() - 2) / std::sqrt(moments.meanVariance()), kLargestZ);
-  EXPECT_GT(std::abs(naive.mean() - 2) / std::sqrt(naive.meanVariance()), kLargestZ);
+  tests::expectUnbiased(moments, 2);
+  tests::expectBiased(naive, 2);
 }
 
 TEST(Mis, PairwiseLeavesTheCanonicalInputItsShare) {
@@ -241,60 +267,6 @@ TEST(Mis, PairwiseLeavesTheCanonicalInputItsShare) {
     const double share = sources[0].reservoir.confidence / double{restir::sumConfidence(span)};
     EXPECT_GE(restir::misWeight(Mis::pairwise, span, 0, {0, {}}, sources[0].target({0, {}})), share * (1 - 1e-6));
   }
-}
-
-TEST(Reservoir, NoNumberBreaksIt) {
-  const float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
-  const std::vector<float> odd{0.0f, 1e-45f, 1e-38f, 1e-30f, 1, 1e30f, 3e38f, inf, -inf, nan, -1};
-  for (float target : odd)
-    for (float weight : odd)
-      for (float confidence : {0.0f, 1.0f, 1e30f}) {
-        core::Rng rng = rngOf(0);
-        ReservoirBuilder builder;
-        builder.add({0, {}}, target, weight, rng);
-        builder.add({1, {}}, 1, 1, rng);
-        const Reservoir r = builder.finish(confidence, 0);
-        EXPECT_TRUE(std::isfinite(r.unbiasedWeight) && r.unbiasedWeight >= 0) << target << " " << weight;
-        EXPECT_EQ(r.confidence, confidence);
-        // A stored weight or target that is out of order must not spread through a merge either.
-        const Reservoir stored{{0, {}}, weight, confidence, 0}, good{{1, {}}, 1, 1, 0};
-        for (Mis mis : {Mis::constant, Mis::contribution, Mis::balance, Mis::pairwise}) {
-          const std::vector<restir::Source<Table>> sources{{good, {{target, 1}}}, {stored, {{target, 1}}}};
-          const Reservoir merged = restir::mergeReservoirs<Table>(sources, mis, 0, rng);
-          EXPECT_TRUE(std::isfinite(merged.unbiasedWeight) && merged.unbiasedWeight >= 0);
-          EXPECT_EQ(merged.confidence, 1 + confidence);
-        }
-      }
-}
-
-TEST(Reservoir, NullSamplesKeepTheirConfidence) {
-  const Reservoir null{{}, 0, 5, 0}, good{{0, {}}, 2, 3, 0};
-  core::Rng rng = rngOf(0);
-  const std::vector<restir::Source<Table>> sources{{null, {{1}}}, {good, {{1}}}};
-  const Reservoir merged = restir::mergeReservoirs<Table>(sources, Mis::balance, 7, rng);
-  EXPECT_EQ(merged.confidence, 8);
-  EXPECT_EQ(merged.frame, 7u);
-  EXPECT_FLOAT_EQ(merged.unbiasedWeight, 2 * 3.0f / 8);  // it found nothing five times out of eight
-}
-
-TEST(Reservoir, CountsNeitherStallNorWrapOverTenThousandFramesOf4096) {
-  // No forgetting: the weight grows, and a fresh count of 4096 still matters.
-  twohistory::Ledger<1> ledger;
-  const twohistory::Policies<1> keepAll{
-      twohistory::Policy{twohistory::Weighting::samples, twohistory::Forgetting::none, 0}};
-  Reservoir history{{}, 0, 0, 0};
-  core::Rng rng = rngOf(0);
-  for (int f = 0; f < 10'000; ++f) {
-    const auto change = twohistory::advanceOf(ledger, keepAll, 4096.0f);
-    history.confidence = change.factor[0] * ledger.weight[0];
-    const Reservoir fresh{{std::uint32_t(f & 1), {}}, 1, change.fresh[0], 0};
-    const std::vector<restir::Source<Table>> sources{{fresh, {{1, 1}}}, {history, {{1, 1}}}};
-    history = restir::mergeReservoirs<Table>(sources, Mis::balance, f, rng);
-    ledger = twohistory::advance(ledger, change, 4096.0f);
-    ASSERT_NEAR(history.unbiasedWeight, 1, 1e-4) << f;
-    ASSERT_EQ(history.confidence, ledger.weight[0]);
-  }
-  EXPECT_EQ(history.confidence, 10'000 * 4096.0f);
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
 // A world of three pixels and four lights whose sums are known exactly, and means over many trials in it.
 #pragma once
 
-#include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
-#include <cmath>
 #include <functional>
 #include <vector>
 
-#include "core/statistics.h"
 #include "restir/mis.h"
+#include "tests/expect_mean.h"
 
 namespace tests::tiny {
 
@@ -18,6 +16,9 @@ using core::LightSample;
 using restir::Mis;
 using restir::Reservoir;
 using restir::ReservoirBuilder;
+using tests::expectBiased;
+using tests::expectUnbiased;
+using tests::kLeastBias;
 
 inline constexpr int kPixels = 3, kLights = 4;
 
@@ -87,23 +88,6 @@ inline core::RunningMoments average(const std::function<float(core::Rng&)>& esti
   core::RunningMoments moments;
   for (const auto& block : blocks) moments.merge(block);
   return moments;
-}
-
-inline constexpr double kLeastBias = 0.01;  ///< that the tests detect, and that their controls have, relative
-inline const double kLargestZ = core::sidakBound(1, 1e-6);
-
-/// Difference from what is expected that chance makes once in a million trials.
-inline double largestChance(const core::RunningMoments& m) { return kLargestZ * std::sqrt(m.meanVariance()); }
-
-/// Unbiased, by a test that notices a bias of kLeastBias half of the time.
-inline void expectUnbiased(const core::RunningMoments& m, double expected) {
-  EXPECT_LT(std::abs(m.mean() - expected), largestChance(m)) << m.mean() << " instead of " << expected;
-  EXPECT_LT(largestChance(m), kLeastBias * expected);
-}
-/// Biased by more than kLeastBias, whatever chance added.
-inline void expectBiased(const core::RunningMoments& m, double truth) {
-  EXPECT_GT(std::abs(m.mean() - truth), kLeastBias * truth + largestChance(m))
-      << m.mean() << " is as good as " << truth;
 }
 
 }  // namespace tests::tiny
