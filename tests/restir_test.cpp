@@ -170,6 +170,21 @@ TEST(Restir, BitsDependNeitherOnThreadsNorOnTiles) {
   EXPECT_TRUE(tests::sameBits(image, imageOf(world, wide())));
 }
 
+/// An image whose pixels draw from one stream of random numbers, in the order in which they are visited.
+core::Planes inOrderOfVisits(int tile) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  core::Planes image(tests::kWidth, tests::kHeight);
+  core::Rng rng(1, core::Pass::lab, 0, 0);
+  core::forEachPixel(
+      tests::kWidth, tests::kHeight, [&](int x, int y) { image.view().store(x, y, vec3(rng.uniform())); }, tile);
+  return image;
+}
+
+TEST(Restir, BitsOfOneStreamOfRandomNumbersDependOnTiles) {
+  EXPECT_TRUE(tests::sameBits(inOrderOfVisits(64), inOrderOfVisits(64)));
+  for (int tile : {1, 5}) EXPECT_FALSE(tests::sameBits(inOrderOfVisits(64), inOrderOfVisits(tile)));
+}
+
 TEST(Restir, KernelsForEverythingGiveTheSameBits) {
   const World world(tests::makeWorld(), kFrames);
   RestirParameters all = wide();

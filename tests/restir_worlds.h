@@ -303,5 +303,7 @@ inline Comparison compare(const Estimate& test, const Estimate& truth) {
                  truth.total.mean();
   return c;
 }
+/// Biased by more than `least`, whatever chance added: what a control of a test that detects `least` must be.
+inline bool isBiased(const Comparison& c, double least = 0.01) { return std::abs(c.ratio - 1) > least + c.detectable; }
 
 }  // namespace tests

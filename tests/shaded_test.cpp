@@ -1,6 +1,6 @@
 // Shading every sample that a pixel and its neighbours merge, in place of the one that is chosen: the same mean in
 // every unbiased mode, less noise. Significance 1e-6; the smallest bias of a frame's light that is detected half of the
-// time is 2 %.
+// time is 2 %, in shaded_test_thorough 1 %; the control has more than that.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -48,7 +48,7 @@ TEST(AllShaded, ConstantWeightsAreCaught) {
   const World world = movingWorld();
   const auto c =
       tests::compare(tests::estimate(world, with(Shaded::all, Mis::constant), 512), tests::reference(world, 16, 512));
-  EXPECT_GT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
+  EXPECT_TRUE(tests::isBiased(c)) << "ratio " << c.ratio;
 }
 
 TEST(AllShaded, IsQuieterThanTheChosenOne) {

@@ -1,5 +1,6 @@
 // Light of an environment map on surfaces: against quadrature, against the same map as a sphere of emissive triangles,
-// and by ReSTIR against light sampling without reuse. Every z-test has significance 1e-6 and a control that it catches.
+// and by ReSTIR against light sampling without reuse. Every z-test has significance 1e-6 and a control that it catches;
+// biases of 2 % are detected half of the time, in environment_restir_test_thorough of 1 %.
 #include <gtest/gtest.h>
 
 #include "core/material.h"
@@ -148,6 +149,7 @@ tests::Estimate referenceOfSum(const World& a, const World& b, int images, int s
   const core::Moment ofA = a.moment(0), ofB = b.moment(0);
   tests::Estimate result;
   core::Planes image(tests::kWidth, tests::kHeight);
+  images *= tests::thoroughness();
   for (int i = 0; i < images; ++i) {
     core::forEachPixel(tests::kWidth, tests::kHeight, [&](int x, int y) {
       const auto pixel = static_cast<std::uint32_t>(y * tests::kWidth + x);
@@ -167,7 +169,7 @@ const core::Planes& blocks() {
 }
 
 /// An image's light is the tessellated map's and nothing else's: all of it, and of every pixel. detects: the relative
-/// bias of all of it that is noticed half of the time.
+/// bias of all of it that is noticed half of the time, in the thorough run less.
 void expectTessellated(const char* name, const tests::Estimate& image, const tests::Estimate& turned,
                        const tests::Estimate& triangles, double detects) {
   const auto same = tests::compare(image, triangles), other = tests::compare(turned, triangles);
@@ -176,7 +178,7 @@ void expectTessellated(const char* name, const tests::Estimate& image, const tes
               same.ratio, same.z, same.worst, worst, same.detectable, other.worst);
   EXPECT_LT(std::abs(same.z), kLargestZ);
   EXPECT_LT(same.worst, worst);
-  EXPECT_LT(same.detectable, detects);
+  EXPECT_LT(same.detectable, tests::detectableBias(detects));
   EXPECT_GT(other.worst, worst);  // control: one texel to the side
 }
 
@@ -199,7 +201,7 @@ TEST(EnvironmentRestir, IsTheSameMapTessellatedBesideLamps) {
                     referenceOfSum(triangles, lamps, 32, 256, hooks.compared), 0.02);
 }
 
-/// The frame's light by many sequences over that of light sampling, by a test that notices a bias of 2 %.
+/// The frame's light by many sequences over that of light sampling.
 tests::Comparison measured(const char* name, const World& world, const RestirParameters& p, int sequences) {
   const auto c = tests::compare(tests::estimate(world, p, sequences), tests::reference(world, 16, 512));
   std::printf("%-24s ratio %.4f, z %5.2f, detects %.4f\n", name, c.ratio, c.z, c.detectable);
@@ -208,7 +210,7 @@ tests::Comparison measured(const char* name, const World& world, const RestirPar
 void expectUnbiased(const char* name, const World& world, const RestirParameters& p, int sequences = 768) {
   const auto c = measured(name, world, p, sequences);
   EXPECT_LT(std::abs(c.z), kLargestZ) << name << " ratio " << c.ratio;
-  EXPECT_LT(c.detectable, 0.02) << name;
+  EXPECT_LT(c.detectable, tests::detectableBias(0.02)) << name;
 }
 
 /// A roof with two steep sides: what one side sees of the sky, the other does not.
@@ -237,7 +239,7 @@ TEST(EnvironmentRestir, OtherUnbiasedWeightsAreUnbiasedAndConstantOnesAreCaught)
   expectUnbiased("pairwise", world, wide(Mis::pairwise));
   expectUnbiased("contribution", world, wide(Mis::contribution), 1024);
   const auto c = measured("constant", world, wide(Mis::constant), 768);
-  EXPECT_GT(std::abs(c.z), kLargestZ) << c.ratio;  // control
+  EXPECT_TRUE(tests::isBiased(c)) << c.ratio;  // control
 }
 
 TEST(EnvironmentRestir, MovingCamerasAndOccludersLeaveItUnbiased) {
