@@ -182,7 +182,7 @@ core::Planes inOrderOfVisits(int tile) {
 
 TEST(Restir, BitsOfOneStreamOfRandomNumbersDependOnTiles) {
   EXPECT_TRUE(tests::sameBits(inOrderOfVisits(64), inOrderOfVisits(64)));
-  for (int tile : {1, 5}) EXPECT_FALSE(tests::sameBits(inOrderOfVisits(64), inOrderOfVisits(tile)));
+  EXPECT_FALSE(tests::sameBits(inOrderOfVisits(64), inOrderOfVisits(5)));
 }
 
 TEST(Restir, KernelsForEverythingGiveTheSameBits) {

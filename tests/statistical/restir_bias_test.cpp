@@ -117,7 +117,9 @@ int fromEnvironment(const char* name, int least, int usual) {
   const char* text = std::getenv(name);
   return text ? std::max(std::atoi(text), least) : usual;
 }
-int sequencesWanted() { return fromEnvironment("TWOFOLD_SEQUENCES", 512, 4096); }
+/// With which every unbiased mode's row detects 1 %; contribution, the noisiest, is given twice as many.
+int usualSequences(Mis mis) { return mis == Mis::contribution ? 9216 : 6144; }
+int sequencesWanted(Mis mis) { return fromEnvironment("TWOFOLD_SEQUENCES", 512, usualSequences(mis)); }
 
 int tableScale() { return fromEnvironment("TWOFOLD_SCALE", 1, 1); }
 
@@ -165,8 +167,8 @@ void tabulate(const char* worldName, const World& world, const Mode& mode, const
   constexpr int kGroups = 16;
   RestirParameters p = wide(mode.reuse, mode.mis);
   p.targetVisibility = mode.visibility, p.shaded = mode.shaded, p.candidates.treeSamples = mode.treeSamples;
-  const int wanted = mode.mis == Mis::contribution ? 2 * sequencesWanted() : sequencesWanted();  // the noisiest
-  const int each = wanted / kGroups;
+  const int wanted = sequencesWanted(mode.mis);
+  const int each = (mode.mis == Mis::contribution ? 2 : 1) * wanted / kGroups;
   std::vector<Estimate> groups;
   Estimate all(world.width(), world.height(), truth.cell);
   for (int g = 0; g < kGroups; ++g) {
@@ -180,13 +182,13 @@ void tabulate(const char* worldName, const World& world, const Mode& mode, const
               bias2HalfWidth(groups, truth), variance.mean, variance.halfWidth(), c.worst);
   std::fflush(stdout);
   const double largestCellZ = core::sidakBound(static_cast<int>(truth.cells.size()), 1e-6);
-  EXPECT_LT(c.detectable, 0.02);
   if (mode.mis == Mis::constant) {
     EXPECT_TRUE(tests::isBiased(c)) << c.ratio;
     EXPECT_GT(c.worst, largestCellZ);
   } else {
     EXPECT_LT(std::abs(c.z), kLargestZ) << c.ratio;
     EXPECT_LT(c.worst, largestCellZ);
+    EXPECT_LT(c.detectable, 0.01 * std::sqrt(std::max(1.0, double(usualSequences(mode.mis)) / wanted)));
   }
 }
 
