@@ -9,6 +9,7 @@
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/gbuffer.h"
@@ -17,6 +18,7 @@
 #include "core/statistics.h"
 #include "restir/direct.h"
 #include "restir/restir.h"
+#include "restir/second.h"
 #include "twohistory/reprojection.h"
 
 namespace tests {
@@ -157,6 +159,8 @@ inline void renderSequence(const World& world, restir::RestirParameters p, const
                            core::Planes& out, int tile = core::kDefaultTile) {
   p.demodulate = false;
   restir::RestirState state(world.width(), world.height());
+  std::optional<restir::SecondHistory> second;
+  if (p.second.on) second.emplace(world.width(), world.height());
   core::Image<float> samples(world.width(), world.height(), 1.0f);
   for (int f = 0; f < world.frames(); ++f) {
     for (int y = 0; y < world.height() && hooks.samples; ++y)
@@ -165,6 +169,7 @@ inline void renderSequence(const World& world, restir::RestirParameters p, const
     restir::drawCandidates(p, frame, state);
     restir::reuseTemporally(p, frame, state);
     restir::reuseSpatiallyAndShade(p, frame, state, out);
+    if (second) second->blendInto(p, frame, state, out);
     if (hooks.after) hooks.after(f, state);
   }
   blank(hooks.compared, out);

@@ -3,14 +3,16 @@
 // Significance 1e-6 a test, seeds 1, 2, ...; the smallest bias of a frame's light that is detected half of the time is
 // 1 %, and single pixels are tested by Sidak's bound. Constant weights must fail.
 // TWOFOLD_SEQUENCES=4096 renders that many sequences of every mode for the table of bias and variance, which is
-// printed; TWOFOLD_MODES=contribution only of those that have that in their name. TWOFOLD_SCALE=4 makes its images that
-// many times as wide and high, and then tests cells of 4 x 4 pixels in place of pixels: the rarest samples of a single
-// pixel there (contribution weights, visibility in the target) are too few for a mean of thousands to be normal.
+// printed; TWOFOLD_MODES='contribution|guided' only of those that have one of that in their name. TWOFOLD_SCALE=4 makes
+// its images that many times as wide and high, and then tests cells of 4 x 4 pixels in place of pixels: the rarest
+// samples of a single pixel there (contribution weights, visibility in the target) are too few for a mean of thousands
+// to be normal.
 #include <gtest/gtest.h>
 
 #include <cstdio>
 #include <cstdlib>
-#include <string_view>
+#include <sstream>
+#include <string>
 
 #include "tests/restir_worlds.h"
 
@@ -91,27 +93,51 @@ TEST(RestirBias, MovingCamera) {
 
 struct Mode {
   const char* name;
-  Reuse reuse;
-  Mis mis;
-  bool visibility;
+  Reuse reuse = Reuse::both;
+  Mis mis = Mis::balance;
+  bool visibility = false;
   restir::Shaded shaded = restir::Shaded::chosen;
-  int treeSamples = 0;
+  restir::CandidateParameters candidates = {};
+  double cap = 20;
+  bool second = false;
 };
-constexpr std::array<Mode, 14> kModes{
-    {{"none", Reuse::none, Mis::balance, false},
-     {"temporal, balance", Reuse::temporal, Mis::balance, false},
-     {"spatial, balance", Reuse::spatial, Mis::balance, false},
-     {"both, contribution", Reuse::both, Mis::contribution, false},
-     {"both, balance", Reuse::both, Mis::balance, false},
-     {"both, pairwise", Reuse::both, Mis::pairwise, false},
+constexpr auto kAll = restir::Shaded::all;
+/// What experiments/configs/efficiency.json calls so.
+constexpr restir::CandidateParameters kDecoupled{.lightSamples = 32, .lightTiles = restir::TileUse::always};
+constexpr restir::CandidateParameters kGuided{
+    .lightSamples = 32, .bsdfSamples = 0.25, .lightTiles = restir::TileUse::always, .treeSamples = 1};
+constexpr std::array<Mode, 23> kModes{
+    {{"none", Reuse::none},
+     {"temporal, balance", Reuse::temporal},
+     {"temporal, contribution", Reuse::temporal, Mis::contribution},
+     {"temporal, pairwise", Reuse::temporal, Mis::pairwise},
+     {"spatial, balance", Reuse::spatial},
+     {"spatial, contribution", Reuse::spatial, Mis::contribution},
+     {"spatial, pairwise", Reuse::spatial, Mis::pairwise},
+     {"both, contribution", Reuse::both, Mis::contribution},
+     {"both, balance"},
+     {"both, pairwise", Reuse::both, Mis::pairwise},
      {"both, contribution, V", Reuse::both, Mis::contribution, true},
      {"both, balance, V", Reuse::both, Mis::balance, true},
      {"both, pairwise, V", Reuse::both, Mis::pairwise, true},
-     {"all shaded, balance", Reuse::both, Mis::balance, false, restir::Shaded::all},
-     {"all shaded, pairwise", Reuse::both, Mis::pairwise, false, restir::Shaded::all},
-     {"balance, tree samples", Reuse::both, Mis::balance, false, restir::Shaded::all, 1},
-     {"both, constant", Reuse::both, Mis::constant, false},
+     {"all shaded, balance", Reuse::both, Mis::balance, false, kAll},
+     {"all shaded, pairwise", Reuse::both, Mis::pairwise, false, kAll},
+     {"all shaded, balance, V", Reuse::both, Mis::balance, true, kAll},
+     {"all shaded, pairwise, V", Reuse::both, Mis::pairwise, true, kAll},
+     {.name = "balance, tree samples", .shaded = kAll, .candidates = {.treeSamples = 1}},
+     {.name = "decoupled", .shaded = kAll, .candidates = kDecoupled},
+     {.name = "guided", .shaded = kAll, .candidates = kGuided, .cap = 5},
+     {.name = "two histories", .candidates = kDecoupled, .second = true},
+     {"both, constant", Reuse::both, Mis::constant},
      {"both, constant, V", Reuse::both, Mis::constant, true}}};
+
+RestirParameters parametersOf(const Mode& mode) {
+  RestirParameters p = wide(mode.reuse, mode.mis);
+  p.targetVisibility = mode.visibility, p.shaded = mode.shaded, p.candidates = mode.candidates;
+  p.temporal.policy.amount = mode.cap;
+  p.second.on = mode.second, p.second.policy.amount = 20;
+  return p;
+}
 
 int fromEnvironment(const char* name, int least, int usual) {
   const char* text = std::getenv(name);
@@ -165,8 +191,7 @@ core::Interval relativeVariance(const std::vector<Estimate>& groups, const Estim
 
 void tabulate(const char* worldName, const World& world, const Mode& mode, const Estimate& truth) {
   constexpr int kGroups = 16;
-  RestirParameters p = wide(mode.reuse, mode.mis);
-  p.targetVisibility = mode.visibility, p.shaded = mode.shaded, p.candidates.treeSamples = mode.treeSamples;
+  const RestirParameters p = parametersOf(mode);
   const int wanted = sequencesWanted(mode.mis);
   const int each = (mode.mis == Mis::contribution ? 2 : 1) * wanted / kGroups;
   std::vector<Estimate> groups;
@@ -192,14 +217,21 @@ void tabulate(const char* worldName, const World& world, const Mode& mode, const
   }
 }
 
+bool isWanted(const std::string& name) {
+  const char* modes = std::getenv("TWOFOLD_MODES");
+  if (!modes) return true;
+  std::istringstream stream(modes);
+  for (std::string part; std::getline(stream, part, '|');)
+    if (name.find(part) != std::string::npos) return true;
+  return false;
+}
+
 void tabulateAll(const char* worldName, const Motion& motion) {
   const World world = tableWorld(motion);
   const Estimate truth = tests::reference(world, 64, tableScale() > 1 ? 512 : 2048, {}, tableScale());
-  const char* wanted = std::getenv("TWOFOLD_MODES");
   int rows = 0;
   for (const Mode& mode : kModes)
-    if (std::string_view(mode.name).find(wanted ? wanted : "") != std::string_view::npos)
-      tabulate(worldName, world, mode, truth), ++rows;
+    if (isWanted(mode.name)) tabulate(worldName, world, mode, truth), ++rows;
   EXPECT_GT(rows, 0) << "no mode has TWOFOLD_MODES in its name";
 }
 
