@@ -25,9 +25,12 @@ using twohistory::Weighting;
 const double kLargestZ = core::sidakBound(1, 1e-6);
 constexpr int kFrames = 6;
 
-constexpr std::array<Policy, 3> kPolicies{{{Weighting::samples, Forgetting::decay, 0.9},
+constexpr std::array<Policy, 6> kPolicies{{{Weighting::samples, Forgetting::decay, 0.9},
                                            {Weighting::samples, Forgetting::relativeCap, 5},
-                                           {Weighting::samples, Forgetting::absoluteCap, 12}}};
+                                           {Weighting::samples, Forgetting::absoluteCap, 12},
+                                           {Weighting::frames, Forgetting::decay, 0.9},
+                                           {Weighting::frames, Forgetting::relativeCap, 5},
+                                           {Weighting::frames, Forgetting::absoluteCap, 3}}};
 
 RestirParameters with(const Policy& policy, Reuse reuse = Reuse::temporal) {
   RestirParameters p;
@@ -58,17 +61,20 @@ float withPauses(int frame, int x, int y, const vec3&) {
   return frame == kFrames - 1 ? 1.0f : static_cast<float>((x + 2 * y + frame) % 3);
 }
 
-class Forget : public testing::TestWithParam<Policy> {};
+class Forget : public testing::TestWithParam<Policy> {
+ protected:
+  static void expectUnbiasedUnder(float (*samples)(int, int, int, const vec3&)) {
+    static const World world(tests::makeWorld(ofLight()), kFrames);
+    static const tests::Estimate truth = tests::reference(world, 16, 512);
+    const auto c = tests::compare(tests::estimate(world, with(GetParam()), 512, {samples, {}, {}}), truth);
+    EXPECT_LT(std::abs(c.z), kLargestZ) << "ratio " << c.ratio;
+    EXPECT_LT(c.detectable, tests::detectableBias(0.02));
+  }
+};
 
-TEST_P(Forget, FixedMapIsUnbiased) {
-  expectUnbiased(World(tests::makeWorld(ofLight()), kFrames), with(GetParam()), {fixedMap, {}, {}});
-}
-TEST_P(Forget, MovingFoveaIsUnbiased) {
-  expectUnbiased(World(tests::makeWorld(ofLight()), kFrames), with(GetParam()), {sweepingFovea, {}, {}});
-}
-TEST_P(Forget, PausesAreUnbiased) {
-  expectUnbiased(World(tests::makeWorld(ofLight()), kFrames), with(GetParam()), {withPauses, {}, {}});
-}
+TEST_P(Forget, FixedMapIsUnbiased) { expectUnbiasedUnder(fixedMap); }
+TEST_P(Forget, MovingFoveaIsUnbiased) { expectUnbiasedUnder(sweepingFovea); }
+TEST_P(Forget, PausesAreUnbiased) { expectUnbiasedUnder(withPauses); }
 INSTANTIATE_TEST_SUITE_P(Policies, Forget, testing::ValuesIn(kPolicies));
 
 /// The world with its first lamp lit in some frames only; values: emission factors of the frames.
