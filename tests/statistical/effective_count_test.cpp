@@ -21,30 +21,44 @@ RestirParameters with(Reuse reuse) {
   return p;
 }
 
-/// Variance of a pixel's luminance in the last frame, n samples everywhere, summed over lit pixels.
-double summedVariance(const World& world, Reuse reuse, float n, int sequences) {
+/// Variance of a pixel's luminance in the last frame, n samples everywhere, summed over pixels; of these sequences.
+double summedVariance(const World& world, Reuse reuse, float n, int sequences, std::uint64_t firstSeed) {
   tests::Hooks hooks;
   hooks.samples = [n](int, int, int, const core::vec3&) { return n; };
-  const tests::Estimate e = tests::estimate(world, with(reuse), sequences, hooks);
-  double sum = 0;
-  for (const core::RunningMoments& m : e.pixels) sum += m.meanVariance() * sequences;
-  return sum;
+  return tests::totalVariance(tests::estimate(world, with(reuse), sequences, hooks, firstSeed));
 }
 
-/// rho with Var(n) = Var(1) (rho + (1 - rho) / n).
-double sharedVariance(const World& world, Reuse reuse, float n) {
-  constexpr int kSequences = 512;
-  const double ratio = summedVariance(world, reuse, n, kSequences) / summedVariance(world, reuse, 1, kSequences);
-  const double inverse = 1 / static_cast<double>(n);
-  return (ratio - inverse) / (1 - inverse);
-}
+/// rho with Var(n) = Var(1) (rho + (1 - rho) / n), of groups of sequences.
+struct SharedVariance {
+  static constexpr int kGroups = 8, kSequences = 128;
+  const World& world;
+  Reuse reuse;
+  std::array<double, kGroups> ofOne = {};
+
+  SharedVariance(const World& w, Reuse r) : world(w), reuse(r) {
+    for (int g = 0; g < kGroups; ++g) ofOne[g] = varianceOf(1, g);
+  }
+  double varianceOf(float n, int group) const {
+    return summedVariance(world, reuse, n, kSequences, 1 + std::uint64_t{kSequences} * static_cast<unsigned>(group));
+  }
+  core::Interval rho(float n) const {
+    core::RunningMoments moments;
+    const double inverse = 1 / static_cast<double>(n);
+    for (int g = 0; g < kGroups; ++g) moments.add((varianceOf(n, g) / ofOne[g] - inverse) / (1 - inverse));
+    return core::meanInterval(moments);
+  }
+};
 
 TEST(EffectiveCount, ResultsWithoutReuseAreIndependentAndReusedOnesShareVariance) {
   const World world(tests::makeWorld(), 24);
-  const double alone = sharedVariance(world, Reuse::none, 8), shared = sharedVariance(world, Reuse::both, 8);
-  std::printf("n = 8: rho %.3f without reuse, %.3f with both\n", alone, shared);
-  EXPECT_NEAR(alone, 0, 0.05);
-  EXPECT_NEAR(shared, static_cast<double>(RestirParameters{}.sharedVariance), 0.08);
+  const SharedVariance alone(world, Reuse::none), shared(world, Reuse::both);
+  for (const float n : {2.0f, 4.0f, 8.0f}) {
+    const core::Interval without = alone.rho(n), reused = shared.rho(n);
+    std::printf("n = %g: rho %.3f +- %.3f without reuse, %.3f +- %.3f with both\n", static_cast<double>(n),
+                without.mean, without.halfWidth(), reused.mean, reused.halfWidth());
+    EXPECT_NEAR(without.mean, 0, 0.05);
+    EXPECT_NEAR(reused.mean, static_cast<double>(RestirParameters{}.sharedVariance), 0.08);
+  }
 }
 
 /// Frames that are worth one independent frame: variance of a mean of T frames over Var(frame) / T, all pixels.
