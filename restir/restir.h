@@ -34,7 +34,8 @@ using twohistory::Choice;
 using twohistory::Ledger;
 using twohistory::Taps;
 
-/// none: n independent results a pixel, each as WithoutReuse says.
+/// none: n independent results a pixel, each as WithoutReuse says. temporal: n batches of candidates, but one result
+/// and one shadow ray whatever n, since a reservoir without neighbours gives no second. spatial, both: n results.
 enum class Reuse { none, temporal, spatial, both };
 
 /// ris: a result is one reservoir, resampled from its candidates. The others are baselines: a result is one light
@@ -158,7 +159,7 @@ void describe(V& v, TemporalParameters& p) {
   v.choice("tap", p.tap, {{"best", Choice::best}, {"stochastic", Choice::stochastic}},
            "which of the reprojected taps gives the reservoir");
   v("previousSurface", p.previousSurface, "history targets use the surface they had, else this frame's (biased)");
-  v("previousCamera", p.previousCamera, "history targets use the viewer they had, else this frame's (biased)");
+  v("previousCamera", p.previousCamera, "history targets use the viewer they had, else this frame's (unbiased too)");
   v("previousLights", p.previousLights, "history targets use the lights they had, else this frame's (biased)");
   v("previousGeometry", p.previousGeometry,
     "history targets that include visibility trace the geometry they had, else this frame's (biased)");
@@ -186,7 +187,7 @@ template <class V>
 void describe(V& v, RestirParameters& p) {
   v.choice("reuse", p.reuse,
            {{"none", Reuse::none}, {"temporal", Reuse::temporal}, {"spatial", Reuse::spatial}, {"both", Reuse::both}},
-           "of reservoirs; none: n independent results a pixel");
+           "of reservoirs; a pixel of n samples shades n results, with temporal reuse alone one");
   v.choice("withoutReuse", p.withoutReuse,
            {{"ris", WithoutReuse::ris},
             {"uniform", WithoutReuse::uniform},
