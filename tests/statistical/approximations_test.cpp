@@ -3,7 +3,7 @@
 // Balance weights sum to 1 over whatever targets they are given, so a wrong target biases nothing by itself. It does
 // where it claims that the history could have found a sample that it could not: then part of that sample's light is
 // left to a history that lacks it. Lights that appear, surfaces that turn to a lamp, occluders that leave do that. A
-// viewer hides no light from a surface, so the viewer of the frame before costs noise at most.
+// viewer hides no light from a surface, so this frame's costs noise at most.
 //
 // Significance 1e-6 a test; the smallest bias of a frame's light that is detected half of the time is 1 %. Control of
 // the unbiased ones: the same worlds with a switch off; of the biased: with all on.
