@@ -210,8 +210,8 @@ void print(const Motion& m, const Calibration& c) {
              c.difference[1]);
 }
 
-/// What the longest history, W .98, exceeds 1.25 by: half a pixel a frame outside the fovea makes neighbours so alike that
-/// b^1.5 is too little (docs/results.md, section 10).
+/// What the longest history, W .98, exceeds 1.25 by: half a pixel a frame outside the fovea makes neighbours so alike
+/// that b^1.5 is too little (docs/results.md, section 10).
 constexpr double kLongest = 1.35;
 
 void expectWithin(const Motion& m, double low, double high) {
@@ -220,7 +220,8 @@ void expectWithin(const Motion& m, double low, double high) {
   for (int k = 0; k <= kHistories; ++k)
     for (int r = 0; r < 3; ++r) {
       EXPECT_GT(c.ratio[k][r], low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(c.ratio[k][r], k == 3 && high > 1.2 ? kLongest : high) << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(c.ratio[k][r], k == 3 && high > 1.2 ? kLongest : high)
+          << m.name << ", " << kCombination[k] << ", region " << r;
     }
 }
 
