@@ -168,6 +168,9 @@ TEST(Lab, SummarisesEveryVariantInEveryCase) {
   ASSERT_EQ(full.size(), 2u);
   EXPECT_EQ(full[0].variant, "seed");
   EXPECT_NEAR(full[0].toSeed, 1, 1e-12);
+  EXPECT_NEAR(full[0].bySeeds.high, 1, 1e-12);
+  EXPECT_LT(full[1].bySeeds.low, full[1].bySeeds.high);
+  EXPECT_NEAR(full[1].bySeeds.mean, full[1].toSeed, 0.1 * full[1].toSeed);
   EXPECT_GE(full[1].worst, full[1].toBaseline);
   EXPECT_NE(overviewText(results).find("lag-checked"), std::string::npos);
   EXPECT_NE(overviewHtml(results).find("<svg"), std::string::npos);

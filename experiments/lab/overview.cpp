@@ -51,10 +51,30 @@ class Ratios {
   std::map<std::pair<std::string, std::string>, core::Interval> values_;
 };
 
+/// Geometric mean over cases of a variant's MSE over `seed`'s, once for every random seed: their interval.
+core::Interval toSeedBySeeds(const Results& results, const std::string& region, const std::string& variant) {
+  std::map<std::pair<std::string, std::uint64_t>, double> base;
+  for (const Row& r : results.rows)
+    if (r.metric == "MSE" && r.region == region && r.variant == kSeed) base[{r.scene, r.seed}] = r.value;
+  std::map<std::uint64_t, std::vector<double>> ratios;
+  for (const Row& r : results.rows) {
+    if (r.metric != "MSE" || r.region != region || r.variant != variant) continue;
+    const auto found = base.find({r.scene, r.seed});
+    if (found != base.end() && r.value > 0 && found->second > 0) ratios[r.seed].push_back(r.value / found->second);
+  }
+  std::vector<double> means;
+  for (const auto& [seed, values] : ratios) means.push_back(core::geometricMean(values));
+  return core::geometricInterval(means);
+}
+
 std::string cellText(const core::Interval& i) {
   if (!std::isfinite(i.mean)) return "-";
   if (!std::isfinite(i.low) || i.low == i.high) return fmt::format("{:.3f}", i.mean);
   return fmt::format("{:.3f} +-{:.3f}", i.mean, i.halfWidth());
+}
+
+std::string intervalText(const core::Interval& i) {
+  return std::isfinite(i.low) ? fmt::format("[{:.3f}, {:.3f}]", i.low, i.high) : "-";
 }
 
 using Cells = std::vector<std::vector<std::string>>;
@@ -81,10 +101,11 @@ Cells tableOf(const Results& results, const std::string& metric, const std::stri
 }
 
 Cells standingsTable(const Results& results, const std::string& region) {
-  Cells cells{{"all cases, " + region, "over " + std::string(kSeed), "over " + results.baseline, "worst", "in"}};
+  Cells cells{
+      {"all cases, " + region, "over " + std::string(kSeed), "95 %", "over " + results.baseline, "worst", "in"}};
   for (const Standing& s : standings(results, region))
-    cells.push_back({s.variant, fmt::format("{:.3f}", s.toSeed), fmt::format("{:.3f}", s.toBaseline),
-                     fmt::format("{:.3f}", s.worst), s.worstCase});
+    cells.push_back({s.variant, fmt::format("{:.3f}", s.toSeed), intervalText(s.bySeeds),
+                     fmt::format("{:.3f}", s.toBaseline), fmt::format("{:.3f}", s.worst), s.worstCase});
   return cells;
 }
 
@@ -133,7 +154,7 @@ std::vector<Standing> standings(const Results& results, const std::string& regio
   std::vector<Standing> all;
   for (const std::string& variant : toBaseline.variants()) {
     if (variant == results.baseline) continue;
-    Standing s{variant, toSeed.mean(variant), toBaseline.mean(variant), 0, ""};
+    Standing s{variant, toSeed.mean(variant), toSeedBySeeds(results, region, variant), toBaseline.mean(variant), 0, ""};
     for (const std::string& c : toBaseline.cases()) {
       const double ratio = toBaseline.at(c, variant).mean;
       if (ratio > s.worst) s.worst = ratio, s.worstCase = c;

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/statistics.h"
 #include "experiments/results.h"
 
 namespace experiments::lab {
@@ -10,9 +11,10 @@ namespace experiments::lab {
 /// How a variant does over all cases, in one region.
 struct Standing {
   std::string variant;
-  double toSeed = 0;      ///< geometric mean over cases of MSE over `seed`'s; NaN where `seed` did not run
-  double toBaseline = 0;  ///< the same over the baseline's
-  double worst = 0;       ///< largest over cases of MSE over the baseline's (mean over seeds)
+  double toSeed = 0;       ///< geometric mean over cases of MSE over `seed`'s; NaN where `seed` did not run
+  core::Interval bySeeds;  ///< the same seed by seed, 95 %
+  double toBaseline = 0;   ///< the same over the baseline's
+  double worst = 0;        ///< largest over cases of MSE over the baseline's (mean over seeds)
   std::string worstCase;
 };
 
