@@ -19,7 +19,7 @@ constexpr int kFrames = 5, kSequences = 768;
 
 RestirParameters wide() {
   RestirParameters p;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

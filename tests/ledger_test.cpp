@@ -95,7 +95,7 @@ Policy anyPolicy(core::Rng& rng) {
 // Caps at changing counts, resets in any frame, and pairs that forget in different ways: the power sums decay by what
 // was forgotten in each frame, or they would not be these.
 TEST(Ledger, HoldsWhatEveryWayOfForgettingLeavesThroughResets) {
-  double worst = 0, shipped = 0;
+  double worst = 0, naive = 0;
   for (std::uint32_t i = 0; i < 2000; ++i) {
     core::Rng rng(4, core::Pass::other, i, 0);
     const auto counts = tests::randomCounts(rng, 1 + static_cast<int>(rng.below(100)), 64);
@@ -121,10 +121,10 @@ TEST(Ledger, HoldsWhatEveryWayOfForgettingLeavesThroughResets) {
     };
     worst = std::max({worst, error(ledger.weight[0], total), error(ledger.ageSum[0], age),
                       error(ledger.powerSums[0], square), error(ledger.powerSums[1], cross)});
-    shipped = std::max(shipped, error(ledger.weight[0] * ledger.weight[0] / 64, square));
+    naive = std::max(naive, error(ledger.weight[0] * ledger.weight[0] / 64, square));
   }
   EXPECT_LE(worst, 1e-11);
-  EXPECT_GT(shipped, 0.1);  // control: variance from the weight alone
+  EXPECT_GT(naive, 0.1);  // control: variance from the weight alone
 }
 
 TEST(Ledger, ControlConstantDecayOfPowerSumsIsCaught) {

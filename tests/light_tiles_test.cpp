@@ -88,7 +88,7 @@ TEST(LightTiles, FewLightsNeedNone) {
 restir::RestirParameters with(TileUse use, restir::Mis mis = restir::Mis::balance) {
   restir::RestirParameters p;
   p.mis = mis, p.candidates.lightTiles = use;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

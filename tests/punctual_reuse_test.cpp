@@ -52,7 +52,7 @@ constexpr float kSpot = 16, kSun = 1;
 RestirParameters with(Reuse reuse, Mis mis = Mis::balance) {
   RestirParameters p;
   p.reuse = reuse, p.mis = mis;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

@@ -27,7 +27,7 @@ constexpr int kFrames = 6;
 RestirParameters wide(Reuse reuse = Reuse::both, Mis mis = Mis::balance) {
   RestirParameters p;
   p.reuse = reuse, p.mis = mis;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

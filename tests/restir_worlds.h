@@ -308,6 +308,13 @@ inline Comparison compare(const Estimate& test, const Estimate& truth) {
                  truth.total.mean();
   return c;
 }
+/// Neighbours that see other lights: from far away, whatever way they face.
+inline restir::SpatialParameters farAndAroundCorners() {
+  restir::SpatialParameters s;
+  s.radius = 0.25f, s.normalCosine = -1, s.planeDistance = 100;
+  return s;
+}
+
 /// Biased by more than `least`, whatever chance added: what a control of a test that detects `least` must be.
 inline bool isBiased(const Comparison& c, double least = 0.01) { return std::abs(c.ratio - 1) > least + c.detectable; }
 

@@ -20,7 +20,7 @@ constexpr int kFrames = 6;
 RestirParameters with(SecondBlend blend, double secondCap = 3) {
   RestirParameters p;
   p.second = {true, {twohistory::Weighting::samples, twohistory::Forgetting::relativeCap, secondCap}, blend};
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

@@ -19,7 +19,7 @@ const double kLargestZ = core::sidakBound(1, 1e-6);
 restir::RestirParameters with(Shaded shaded, Mis mis = Mis::balance, bool visibility = false) {
   restir::RestirParameters p;
   p.mis = mis, p.shaded = shaded, p.targetVisibility = visibility;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

@@ -24,7 +24,7 @@ constexpr int kFrames = 6;
 RestirParameters seeing(Reuse reuse = Reuse::both, Mis mis = Mis::balance) {
   RestirParameters p;
   p.reuse = reuse, p.mis = mis, p.targetVisibility = true;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

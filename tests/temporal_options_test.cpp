@@ -35,7 +35,7 @@ constexpr std::array<Policy, 6> kPolicies{{{Weighting::samples, Forgetting::deca
 RestirParameters with(const Policy& policy, Reuse reuse = Reuse::temporal) {
   RestirParameters p;
   p.reuse = reuse, p.temporal.policy = policy, p.candidates = {4, 1};
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

@@ -138,7 +138,7 @@ core::Scene tessellated(core::Scene scene) {
 RestirParameters wide(Mis mis = Mis::balance, bool visibility = false) {
   RestirParameters p;
   p.mis = mis, p.targetVisibility = visibility;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

@@ -27,7 +27,7 @@ constexpr double kSignificance = 1e-6, kBound = 0.01;
 RestirParameters wide(Mis mis, bool visibility = false) {
   RestirParameters p;
   p.mis = mis, p.targetVisibility = visibility;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

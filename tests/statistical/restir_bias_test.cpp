@@ -33,7 +33,7 @@ const double kLargestZ = core::sidakBound(1, 1e-6), kLargestPixelZ = core::sidak
 RestirParameters wide(Reuse reuse, Mis mis = Mis::balance) {
   RestirParameters p;
   p.reuse = reuse, p.mis = mis;
-  p.spatial.radius = 0.25f, p.spatial.normalCosine = -1, p.spatial.planeDistance = 100;
+  p.spatial = tests::farAndAroundCorners();
   return p;
 }
 

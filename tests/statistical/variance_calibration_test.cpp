@@ -1,5 +1,6 @@
 // Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
-// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion. The control is the rule for independent taps
+// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion, but for the
+// longest history, which is known to exceed it (kLongestMost). The control is the rule for independent taps
 // (b^2). Relative standard error of a ratio: below 0.3 % (printed ratios are means over 1,500 pixels and 400
 // sequences).
 #include <fmt/core.h>
@@ -210,35 +211,39 @@ void print(const Motion& m, const Calibration& c) {
              c.difference[1]);
 }
 
-/// What the longest history, W .98, exceeds 1.25 by: half a pixel a frame outside the fovea makes neighbours so alike
-/// that b^1.5 is too little (docs/results.md, section 10).
-constexpr double kLongest = 1.35;
+/// What the longest history, W .98, keeps to under bilinear motion in place of 1.25: half a pixel a frame outside the
+/// fovea makes neighbours so alike that b^1.5 is too little (docs/results.md, section 10).
+constexpr int kLongest = 3;
+constexpr double kLongestMost = 1.35;
 
-void expectWithin(const Motion& m, double low, double high) {
+/// longestMost: what the longest history keeps to.
+Calibration expectWithin(const Motion& m, double low, double high, double longestMost) {
   const Calibration c = calibrate(m);
   print(m, c);
   for (int k = 0; k <= kHistories; ++k)
     for (int r = 0; r < 3; ++r) {
       EXPECT_GT(c.ratio[k][r], low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(c.ratio[k][r], k == 3 && high > 1.2 ? kLongest : high)
+      EXPECT_LT(c.ratio[k][r], k == kLongest ? longestMost : high)
           << m.name << ", " << kCombination[k] << ", region " << r;
     }
+  return c;
 }
 
-TEST(PredictedVariance, OfAStillCameraIsWithinTwoPercent) { expectWithin({"still", vec2(0), 0, 0}, 0.98, 1.02); }
-TEST(PredictedVariance, OfAWindowsMeanDifferenceIsRightStillAndTooSmallWhereTapsMix) {
+TEST(PredictedVariance, OfAStillCameraIsWithinTwoPercent) {
+  const Calibration c = expectWithin({"still", vec2(0), 0, 0}, 0.98, 1.02, 1.02);
+  for (const double ratio : c.difference) EXPECT_NEAR(ratio, 1, 0.02);
+}
+TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) {
+  expectWithin({"1, 0", vec2(1, 0), 0, 0}, 0.98, 1.02, 1.02);
+}
+TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
+  for (const Motion& m : {Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0}, Motion{"0.1, 0", vec2(0.1f, 0), 0, 0},
+                          Motion{"random", vec2(0), 1, 0}, Motion{"turn 0.5 degrees", vec2(0), 0, 0.5f}})
+    expectWithin(m, 0.8, 1.25, kLongestMost);
   // Mixing taps makes pixels quieter and their neighbours alike, and a window's mean no quieter at all. So blends take
   // measured spreads beside the prediction (twohistory/lag.h).
-  const Calibration still = calibrate({"still", vec2(0), 0, 0}), moving = calibrate({"0.5, 0.5", vec2(0.5f), 0, 0});
-  for (const double ratio : still.difference) EXPECT_NEAR(ratio, 1, 0.02);
-  for (const double ratio : moving.difference) EXPECT_GT(ratio, 1.25);
-}
-TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) { expectWithin({"1, 0", vec2(1, 0), 0, 0}, 0.98, 1.02); }
-TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
-  for (const Motion& m : {Motion{"0.5, 0.5", vec2(0.5f), 0, 0}, Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0},
-                          Motion{"0.1, 0", vec2(0.1f, 0), 0, 0}, Motion{"random", vec2(0), 1, 0},
-                          Motion{"turn 0.5 degrees", vec2(0), 0, 0.5f}})
-    expectWithin(m, 0.8, 1.25);
+  const Calibration half = expectWithin({"0.5, 0.5", vec2(0.5f), 0, 0}, 0.8, 1.25, kLongestMost);
+  for (const double ratio : half.difference) EXPECT_GT(ratio, 1.25);
 }
 TEST(PredictedVariance, ControlIndependentTapsClaimTooLittle) {
   const Calibration c = calibrate({"random", vec2(0), 1, 0});
