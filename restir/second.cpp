@@ -61,7 +61,8 @@ void SecondHistory::weighByCounts(const RestirParameters& p, const Frame& frame,
   core::forEachPixel(
       weight_.width(), weight_.height(),
       [&](int x, int y) {
-        const Ledger<2> old = twohistory::gather<2, float>(first.taps(x, y), ledgerBefore_);
+        const Ledger<2> old =
+            twohistory::gather<2, float>(first.taps(x, y), ledgerBefore_, policies, frame.samples(x, y));
         ledger_(x, y) = twohistory::advance(old, policies, frame.samples(x, y));
         weight_(x, y) = twohistory::leastVarianceWeight(twohistory::pairOf(ledger_(x, y), 0, 1));  // [blend opt]
       },

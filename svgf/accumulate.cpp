@@ -83,7 +83,7 @@ double clampFireflies(const FilterParameters& parameters, In<Taps> taps, PlanesV
     const float n = s.samples(x, y), luminance = core::luminance(colour);
     out.store(x, y, colour);
     if (!(n > 0) || !(luminance > 0)) return 0.0;
-    const twohistory::Recall<1> recall(taps(x, y), ledgers, {keep}, n);
+    const twohistory::Recall<1> recall(taps(x, y), ledgers, taps.width, {keep}, n);
     const Moments m = MomentsMerge{}.gather(before, recall.step(0, {x, y}));
     if (m.innovations < parameters.spatialBelow) return 0.0;
     const float deviation = std::sqrt(m.sampleVariance * (1 / n + recall.gathered.covariance(0, 0)));

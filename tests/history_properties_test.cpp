@@ -209,7 +209,8 @@ Remembered remember(const Schedule& s, int first, int resetAt) {
   value.fill(core::Image<float>(1, 1, 0.0f));
   for (int f = first; f < static_cast<int>(s.counts.size()); ++f) {
     const twohistory::Taps taps = f == first || f == resetAt ? twohistory::Taps{} : twohistory::stillTap(0);
-    const twohistory::Recall<3> recall(taps, core::In<Ledger<3>>(ledger), s.policies, static_cast<float>(s.counts[f]));
+    const twohistory::Recall<3> recall(taps, core::In<Ledger<3>>(ledger), 1, s.policies,
+                                       static_cast<float>(s.counts[f]));
     for (int j = 0; j < 3; ++j) {
       const twohistory::Step step = recall.step(j, {0, 0});
       value[j](0, 0) = mean.merge(mean.gather(core::In<float>(value[j]), step), 1.0f / static_cast<float>(f + 1), step);
@@ -242,15 +243,17 @@ TEST(Bookkeeping, DoesNotDependOnTheOrderOfTaps) {
   int moved = 0;  // control: the same weights on other taps
   for (std::uint32_t i = 0; i < kSchedules; ++i) {
     core::Rng rng(25, core::Pass::other, i, 0);
-    core::Image<Ledger<3>> before(4, 1);
-    core::Image<float> value(4, 1);
+    core::Image<Ledger<3>> before(2, 2);
+    core::Image<float> value(2, 2);
     for (int k = 0; k < 4; ++k) {
-      before(k, 0) = ledgerOf<float>(randomSchedule(i + static_cast<std::uint32_t>(k)));
-      value(k, 0) = rng.uniform();
+      before(k % 2, k / 2) = ledgerOf<float>(randomSchedule(i + static_cast<std::uint32_t>(k)));
+      value(k % 2, k / 2) = rng.uniform();
     }
     std::array<int, 4> order{0, 1, 2, 3};
     for (int k = 3; k > 0; --k) std::swap(order[k], order[rng.below(static_cast<std::uint32_t>(k) + 1)]);
     twohistory::Taps taps{{0, 1, 2, 3}, {rng.uniform(), rng.uniform(), rng.uniform(), rng.uniform()}}, turned, other;
+    const float sum = taps.b[0] + taps.b[1] + taps.b[2] + taps.b[3];
+    for (float& b : taps.b) b /= sum;
     for (int k = 0; k < 4; ++k) {
       turned.pixel[k] = order[k], turned.b[k] = taps.b[order[k]];
       other.pixel[k] = order[k], other.b[k] = taps.b[k];
@@ -260,11 +263,15 @@ TEST(Bookkeeping, DoesNotDependOnTheOrderOfTaps) {
       step.taps = twohistory::premultiplied<3>(t, before.view(), 1);
       return mean.gather(value.view(), step);
     };
-    const Ledger<3> a = gather<3, float>(taps, before), b = gather<3, float>(turned, before);
+    const auto n = static_cast<float>(rng.below(9));
+    const auto gathered = [&](const twohistory::Taps& t) {
+      return gather<3, float>(t, before, randomSchedule(i).policies, n);
+    };
+    const Ledger<3> a = gathered(taps), b = gathered(turned);
     for (int j = 0; j < 3; ++j) ASSERT_TRUE(near(a.weight[j], b.weight[j]) && near(a.ageSum[j], b.ageSum[j]));
     for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_TRUE(near(a.powerSums[j], b.powerSums[j]));
     ASSERT_TRUE(near(valueOf(taps), valueOf(turned))) << "schedule " << i;
-    moved += !near(a.ageSum[2], gather<3, float>(other, before).ageSum[2]);
+    moved += !near(a.ageSum[2], gathered(other).ageSum[2]);
   }
   EXPECT_GT(moved, static_cast<int>(kSchedules / 2));
 }

@@ -192,7 +192,8 @@ TEST(Ledger, TapsMixSumsAndOrderDoesNotMatter) {
     before(i % 2, i / 2) = l;
   }
   const twohistory::Taps taps{{0, 1, 2, 3}, {0.1f, 0.2f, 0.3f, 0.4f}}, reversed{{3, 2, 1, 0}, {0.4f, 0.3f, 0.2f, 0.1f}};
-  const auto a = twohistory::gather<1, float>(taps, before), b = twohistory::gather<1, float>(reversed, before);
+  const twohistory::Policies<1> policy{decaying(kSamples, 0.95)};
+  const auto a = gather<1, float>(taps, before, policy, 1.0f), b = gather<1, float>(reversed, before, policy, 1.0f);
   float expected = 0;
   for (int i = 0; i < 4; ++i) expected += taps.b[i] * before(i % 2, i / 2).weight[0];
   EXPECT_FLOAT_EQ(a.weight[0], expected);
@@ -201,15 +202,16 @@ TEST(Ledger, TapsMixSumsAndOrderDoesNotMatter) {
   float kept = 0;
   for (int i = 0; i < 4; ++i) kept += taps.b[i] * before(i % 2, i / 2).powerSums[0];
   EXPECT_LT(a.powerSums[0], kept);  // mixing pixels averages their noise
-  const auto one = twohistory::gather<1, float>(twohistory::stillTap(2), before);
+  const auto one = gather<1, float>(twohistory::stillTap(2), before, policy, 1.0f);
   EXPECT_EQ(one.powerSums[0], before(0, 1).powerSums[0]);  // a camera at rest changes no bit
 }
 
 TEST(Ledger, ResetIsAFreshStart) {
   core::Image<Ledger<2>> before(1, 1);
   before(0, 0) = run<float>({8, 1, 1, 0, 3}, decaying(kFrames, 0.95), decaying(kSamples, 0.8));
-  const auto gathered = twohistory::gather<2, float>(twohistory::Taps{}, before);
-  const auto after = advance(gathered, {decaying(kFrames, 0.95), decaying(kSamples, 0.8)}, 5.0f);
+  const twohistory::Policies<2> policies{decaying(kFrames, 0.95), decaying(kSamples, 0.8)};
+  const auto gathered = twohistory::gather<2, float>(twohistory::Taps{}, before, policies, 5.0f);
+  const auto after = advance(gathered, policies, 5.0f);
   const auto fresh = run<float>({5}, decaying(kFrames, 0.95), decaying(kSamples, 0.8));
   EXPECT_EQ(after.weight, fresh.weight);
   EXPECT_EQ(after.powerSums, fresh.powerSums);

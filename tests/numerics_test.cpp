@@ -152,7 +152,7 @@ TEST(UnequalTaps, NaiveMixingOfMeansClaimsTwentyTimesTooLittleVariance) {
   const Policy forever{Weighting::samples, Forgetting::none, 0};
   for (int i = 0; i < 20; ++i) before(1, 0) = advance(before(1, 0), {forever}, 8.0f);
   const twohistory::Taps taps{{0, 1, 0, 0}, {0.5f, 0.5f, 0, 0}};
-  const Ledger<1> mixed = gather<1, float>(taps, before);
+  const Ledger<1> mixed = gather<1, float>(taps, before, {kW}, 1.0f);
   const float naiveTrue = 0.25f * before(0, 0).covariance(0, 0) + 0.25f * before(1, 0).covariance(0, 0);
   EXPECT_NEAR(naiveTrue, 0.25f, 0.01f);              // of the mean of means
   EXPECT_NEAR(1 / mixed.weight[0], 0.0124f, 1e-3f);  // what the interpolated weight would claim: 20 times less

@@ -30,6 +30,14 @@ vec3 filtered(const core::Guide& guide, const core::EdgeParameters& edges, core:
   return total > 0 ? sum / total : vec3(0);
 }
 
+/// Whether a tap's history holds anything that the frame could differ from.
+template <int K>
+bool knowsAnything(const Taps& t, LedgerView<K> before, int history) {
+  for (int k = 0; k < 4; ++k)
+    if (t.b[k] > 0 && before.at(t.pixel[k]).weight[history] > 0) return true;
+  return false;
+}
+
 }  // namespace
 
 void GradientState::fit(int width, int height) {
@@ -48,8 +56,7 @@ void updateGradient(const GradientParameters& p, const core::Guide& guide, In<Ta
     vec3 g(0);
     if (t.valid()) {
       g = gatherMean(gradient, t);
-      if (n(x, y) > 0 &&
-          gatherFrom<K, float>(t, ledgerBefore).weight[history] > 0) {  // else there is nothing to differ from
+      if (n(x, y) > 0 && knowsAnything<K>(t, ledgerBefore, history)) {
         const vec3 past = p.source == GradientSource::filtered
                               ? gatherMean(before, premultiplied<K>(t, ledgerBefore, history))
                               : gatherMean(signal, t);

@@ -63,12 +63,13 @@ struct Recall {
   Ledger<K> gathered, now;
   Advance<K> change;
 
-  /// before: anything whose at(index) is or becomes a Ledger<K>.
+  /// before: anything whose at(index) is or becomes a Ledger<K>; width: of its image.
   template <class Ledgers>
-  Recall(const Taps& t, const Ledgers& before, const Policies<K>& policies, float n)
+  Recall(const Taps& t, const Ledgers& before, int width, const Policies<K>& policies, float n)
       : taps(t), samples(n), tap{read(before, 0), read(before, 1), read(before, 2), read(before, 3)} {
-    gathered = gatherFrom<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
-    change = advanceOf(gathered, policies, n);
+    const auto sums = sumTaps<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
+    change = advanceOf(sums.ledger, policies, n);
+    gathered = mix(sums, pairsOf(t, width), change, n);
     now = advance(gathered, change, n);
   }
   /// In place: a ledger that is unpacked field by field and then copied waits for its stores.
@@ -100,7 +101,7 @@ void accumulateInto(In<Taps> taps, In<float> n, const Policies<K>& policies, con
   core::forEachPixel(
       n.width, n.height,
       [&](int x, int y) {
-        const Recall<K> recall(taps(x, y), ledgersBefore, policies, n(x, y));
+        const Recall<K> recall(taps(x, y), ledgersBefore, n.width, policies, n(x, y));
         ledgersNow.store(x, y, recall.now);
         for (int j = 0; j < K; ++j) {
           const Step step = recall.step(j, {x, y});

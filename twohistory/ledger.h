@@ -13,10 +13,10 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <type_traits>
 
 #include "core/image.h"
+#include "twohistory/mixing.h"
 #include "twohistory/policy.h"
 #include "twohistory/taps.h"
 
@@ -88,29 +88,71 @@ Ledger<K, Real> advance(const Ledger<K, Real>& gathered, const Policies<K>& poli
   return advance(gathered, advanceOf(gathered, policies, n), n);
 }
 
-/// What the taps of the previous frame know [ledger taps]. Weights and age sums are sums, so they mix with b; power
-/// sums mix with b^1.5, between b^2 (independent taps) and b (fully dependent ones): measured, see docs/decisions.md.
+/// Sums over the taps of the previous frame.
+template <int K, class Real = float>
+struct TapSums {
+  Ledger<K, Real> ledger;                              ///< weights and age sums with b, power sums with b^2
+  std::array<Real, Ledger<K, Real>::kPairs> shared{};  ///< power sums with b (1 - b)
+};
+
 /// before: anything whose at(index) is or becomes a Ledger<K, Real>.
 template <int K, class Real, class Before>
-Ledger<K, Real> gatherFrom(const Taps& taps, const Before& before) {
-  Ledger<K, Real> sum;
+TapSums<K, Real> sumTaps(const Taps& taps, const Before& before) {
+  TapSums<K, Real> sum;
   for (int k = 0; k < 4; ++k) {
     const Real b = taps.b[k];
     if (!(b > 0)) continue;
     const Ledger<K, Real>& tap = before.at(taps.pixel[k]);
-    const Real power = b * std::sqrt(b);  // [ledger taps]
     for (int j = 0; j < K; ++j) {
-      sum.weight[j] += b * tap.weight[j];
-      sum.ageSum[j] += b * tap.ageSum[j];
+      sum.ledger.weight[j] += b * tap.weight[j];
+      sum.ledger.ageSum[j] += b * tap.ageSum[j];
     }
-    for (int i = 0; i < Ledger<K, Real>::kPairs; ++i) sum.powerSums[i] += power * tap.powerSums[i];
+    for (int i = 0; i < Ledger<K, Real>::kPairs; ++i) {
+      const Real part = b * tap.powerSums[i];
+      sum.ledger.powerSums[i] += b * part;
+      sum.shared[i] += part - b * part;
+    }
   }
   return sum;
 }
 
+/// How alike the taps of each history are (mixing.h). a: what the frame does to it; n: its samples.
 template <int K, class Real>
-Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before) {
-  return gatherFrom<K, Real>(taps, before);
+std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const Advance<K, Real>& a, Real n) {
+  std::array<Real, K> r;
+  for (int j = 0; j < K; ++j) {
+    const int i = pairIndex<K>(j, j);
+    const Real noise = sums.ledger.powerSums[i] + sums.shared[i], added = n > 0 ? a.fresh[j] * a.fresh[j] / n : Real(0);
+    r[j] = noise > 0 ? tapLikeness(pairs, deathRate(sums.ledger.ageSum[j], sums.ledger.weight[j], a.factor[j]),
+                                   std::min(Real(1), added / noise))
+                     : Real(0);
+  }
+  return r;
+}
+
+/// What the taps know [ledger taps]. Weights and age sums are sums, so they mix with b; power sums mix between b^2
+/// (independent taps) and b (one value), by how alike they are. The harmonic mean of two histories' likenesses keeps
+/// them a covariance matrix: 1 / (x_g + x_h) is positive semidefinite, and so is its product with another, term by
+/// term.
+template <int K, class Real>
+Ledger<K, Real> mix(const TapSums<K, Real>& sums, const TapPairs& pairs, const Advance<K, Real>& a, Real n) {
+  Ledger<K, Real> mixed = sums.ledger;
+  if (!(pairs.all() > 0)) return mixed;
+  const std::array<Real, K> r = likenesses(sums, pairs, a, n);
+  for (int i = 0, g = 0; g < K; ++g)
+    for (int h = g; h < K; ++h, ++i) {
+      const Real both = g == h ? r[g] : 2 * r[g] * r[h] / std::max(r[g] + r[h], Real(1e-20));
+      mixed.powerSums[i] += both * sums.shared[i];  // [ledger taps]
+    }
+  return mixed;
+}
+
+/// What a frame of n samples finds under its taps. before: without padding.
+template <int K, class Real>
+Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before,
+                       const Policies<K>& policies, Real n) {
+  const auto sums = sumTaps<K, Real>(taps, before);
+  return mix(sums, pairsOf(taps, before.width), advanceOf(sums.ledger, policies, n), n);
 }
 
 }  // namespace twohistory

@@ -131,7 +131,7 @@ class TwinAccumulation {
   [[gnu::always_inline]] void stepTwin(int x, int y, const Taps& t, float count, std::uint16_t ratio,
                                        bool isZero) const {
     const First first{before.packed};
-    const Recall<1> recall(t, first, {policies[0]}, count);
+    const Recall<1> recall(t, first, n.width, {policies[0]}, count);
     now.packed(x, y) = StoredLedger<2>::twin(recall.now, ratio, now.dither(x, y));
     const Step step = recall.step(0, {x, y});
     valueNow[0].store(x, y, merge.merge(merge.gather(valueBefore[0], step), fresh.load(x, y), step));
@@ -140,7 +140,7 @@ class TwinAccumulation {
 
   /// Returns whether the pixel has become a twin.
   [[gnu::noinline]] bool stepBoth(int x, int y) const {
-    const Recall<2> recall(taps(x, y), before, policies, n(x, y));
+    const Recall<2> recall(taps(x, y), before, n.width, policies, n(x, y));
     for (int j = 0; j < 2; ++j) {
       const Step step = recall.step(j, {x, y});
       valueNow[j].store(x, y, merge.merge(merge.gather(valueBefore[j], step), fresh.load(x, y), step));

@@ -1,0 +1,82 @@
+// How alike the noise of neighbouring pixels is. Taps of one resampled image share samples, so the noise of their mix
+// lies between that of independent taps (sum b^2 C) and of one value (sum b C); where, depends on how often what is
+// remembered has been resampled.
+//
+// Let every frame move an image by a fraction f of a pixel and forget it to the factor d. The covariance R_n of pixels
+// n apart follows R_n <- d^2 (s/2 R_(n-1) + (1 - s) R_n + s/2 R_(n+1)) + what is fresh at n = 0, with s = 2 f (1 - f):
+// a random walk that dies at the rate u = 1 / d^2 - 1. Where it has settled R_n = rho^|n| R_0, and
+//
+//   [ledger walk]   rho + 1 / rho = 2 + 2 u / s
+//   [ledger plane]  u -> (u + l) / (1 - l), l = s (1 - rho) of the other axis: leaving a row is like dying there
+//   [ledger alike]  r = min(1, rho (1/4 + 3/4 min(3, (1 - F) / O))), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
+//
+// F is the share of the noise that a frame's fresh samples have, O what a settled walk has older than a frame.
+// Derivation, and how exact this is: docs/history.md.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "twohistory/taps.h"
+
+namespace twohistory {
+
+/// Sums of b_k b_l over pairs of different taps (each pair twice), by how the two lie to each other; with the sum of
+/// b^2 they make 1.
+struct TapPairs {
+  float row = 0;       ///< side by side
+  float column = 0;    ///< one above the other
+  float diagonal = 0;  ///< neither
+
+  float all() const { return row + column + diagonal; }
+  float alongRow() const { return row + diagonal; }        ///< s of the step in x: 2 f (1 - f)
+  float alongColumn() const { return column + diagonal; }  ///< and in y
+};
+
+/// width: of the image that the taps point into, pixels. Does not depend on the taps' order.
+inline TapPairs pairsOf(const Taps& t, int width) {
+  const std::array<std::int32_t, 4> step{0, 1, width, width + 1};
+  const int first = t.b[0] > 0 ? 0 : t.b[1] > 0 ? 1 : t.b[2] > 0 ? 2 : 3, corner = t.pixel[first] - step[first];
+  const auto inPlace = [&](int k) { return (t.b[k] == 0) | (t.pixel[k] == corner + step[k]); };
+  if (inPlace(0) & inPlace(1) & inPlace(2) & inPlace(3))  // as reprojection orders them
+    return {2 * (t.b[0] * t.b[1] + t.b[2] * t.b[3]), 2 * (t.b[0] * t.b[2] + t.b[1] * t.b[3]),
+            2 * (t.b[0] * t.b[3] + t.b[1] * t.b[2])};
+  TapPairs p;
+  for (int k = 0; k < 4; ++k)
+    for (int l = k + 1; l < 4; ++l) {
+      const bool inRow = t.pixel[k] / width == t.pixel[l] / width, inColumn = t.pixel[k] % width == t.pixel[l] % width;
+      (inRow ? p.row : inColumn ? p.column : p.diagonal) += 2 * t.b[k] * t.b[l];
+    }
+  return p;
+}
+
+/// rho of neighbours along an axis, in [0, 1). death: u > 0; step: s >= 0.
+template <class Real>
+Real walkCorrelation(Real death, Real step) {
+  return step / (step + death + std::sqrt(death * (death + 2 * step)));  // [ledger walk], without cancelling terms
+}
+
+/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; death: u > 0; freshShare: F in [0, 1].
+template <class Real>
+Real tapLikeness(const TapPairs& p, Real death, Real freshShare) {
+  const Real sx = p.alongRow(), sy = p.alongColumn(), all = p.all();
+  const Real lostX = sx * (1 - walkCorrelation(death, sx)), lostY = sy * (1 - walkCorrelation(death, sy));
+  const Real x = walkCorrelation(death + lostY, sx * (1 - lostY));  // [ledger plane], both divided by 1 - l
+  const Real y = walkCorrelation(death + lostX, sy * (1 - lostX));
+  const Real common = p.row * x + p.column * y + p.diagonal * x * y;
+  const Real older = (1 - freshShare) * (1 + death) / (1 - all + common);                         // (1 - F) / O
+  return std::min(Real(1), common / all * (Real(0.25) + Real(0.75) * std::min(Real(3), older)));  // [ledger alike]
+}
+
+/// u of a history that keeps d of its weight a frame and has the age sum A and weight W: mostly its decay's, and its
+/// age's while it still grows and remembers less than its decay lets it. In [1e-12, 1e6].
+template <class Real>
+Real deathRate(Real ageSum, Real weight, Real factor) {
+  const auto rate = [](Real inverseSurvival) { return inverseSurvival * inverseSurvival - 1; };
+  const Real byAge = ageSum > 0 ? rate((ageSum + weight) / ageSum) : Real(1e7);
+  const Real byDecay = factor > 0 ? rate(1 / factor) : Real(1e7);
+  return std::clamp(Real(0.2) * byAge + Real(0.8) * byDecay, Real(1e-12), Real(1e6));  // [ledger death]
+}
+
+}  // namespace twohistory
