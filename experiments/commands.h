@@ -15,5 +15,6 @@ void addSceneCommand(CLI::App& app);
 void addLabCommand(CLI::App& app);
 void addEfficiencyCommand(CLI::App& app);
 void addPredictCommand(CLI::App& app);
+void addTableCommand(CLI::App& app);
 
 }  // namespace experiments

@@ -30,6 +30,7 @@ void addCommands(CLI::App& app) {
   experiments::addLabCommand(app);
   experiments::addEfficiencyCommand(app);
   experiments::addPredictCommand(app);
+  experiments::addTableCommand(app);
 }
 
 int run(int argc, char** argv) {

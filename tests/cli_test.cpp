@@ -57,7 +57,7 @@ class Cli : public testing::Test {
 TEST_F(Cli, HelpIsForEverySubcommand) {
   const Outcome all = run("--help");
   EXPECT_EQ(all.code, 0);
-  for (const char* command : {"run", "render", "compare", "scene", "lab", "efficiency", "predict"}) {
+  for (const char* command : {"run", "render", "compare", "scene", "lab", "efficiency", "predict", "table"}) {
     EXPECT_NE(all.out.find(command), std::string::npos) << command;
     const Outcome one = run(std::string(command) + " --help");
     EXPECT_EQ(one.code, 0) << command;
@@ -70,7 +70,7 @@ TEST_F(Cli, HelpIsForEverySubcommand) {
 TEST_F(Cli, WrongUsageExitsWithTwoAndOneLine) {
   for (const char* wrong :
        {"", "fly", "--fly", "predict", "predict --decay", "compare", "compare one.exr", "scene", "scene --list cornell",
-        "scene cornell", "scene nowhere -o x.glb", "compare a b c", "run", "render"})
+        "scene cornell", "scene nowhere -o x.glb", "compare a b c", "run", "render", "table"})
     expectUsageError(wrong);
 }
 
@@ -139,6 +139,12 @@ TEST_F(Cli, CompareRefusesWhatCannotBeCompared) {
   expectFailure("compare " + good + "'" + file("text.exr") + "'", 1, "text.exr");
   expectFailure("compare " + good + "'" + file("absent.exr") + "'", 1, "absent.exr");
   expectFailure("compare " + good + good + "--layer albedo", 1, "albedo");
+}
+
+TEST_F(Cli, TableRefusesWhatHoldsNoResults) {
+  expectFailure("table '" + file("absent.json") + "'", 1, "absent.json");
+  write("broken.json", "{\"rows\": 3}");
+  expectFailure("table '" + file("broken.json") + "'", 1, "broken.json");
 }
 
 TEST_F(Cli, ScenesAreListedAndWritten) {

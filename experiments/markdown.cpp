@@ -1,0 +1,142 @@
+#include "experiments/markdown.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "core/check.h"
+#include "experiments/json_text.h"
+#include "experiments/names.h"
+#include "experiments/summary.h"
+
+namespace experiments {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
+
+/// What was asked for, or all there is. kind: for the error.
+std::vector<std::string> chosen(const std::vector<std::string>& wanted, const Names& present, const char* kind) {
+  for (const std::string& name : wanted)
+    if (!present.has(name))
+      throw core::UsageError(name, std::string("the results have no such ") + kind,
+                             "choose among " + joined(present.inOrder()));
+  return wanted.empty() ? present.inOrder() : wanted;
+}
+
+/// A bar would end a cell.
+std::string cellText(std::string name) {
+  for (std::size_t at = 0; (at = name.find('|', at)) != std::string::npos; at += 2) name.insert(at, "\\");
+  return name;
+}
+
+std::string ratioText(const core::Interval& i) {
+  if (!std::isfinite(i.mean)) return "\u2013";
+  return std::isfinite(i.low) ? fmt::format("{:.3f} [{:.3f}, {:.3f}]", i.mean, i.low, i.high)
+                              : fmt::format("{:.3f}", i.mean);
+}
+
+class Tables {
+ public:
+  Tables(const Results& results, const MarkdownSelection& s)
+      : baseline_(s.baseline.empty() ? results.baseline : s.baseline) {
+    Names scenes, metrics, regions, variants;
+    for (const Row& r : results.rows)
+      scenes.add(r.scene), metrics.add(r.metric), regions.add(r.region), variants.add(r.variant);
+    scenes_ = chosen(s.scenes, scenes, "scene"), metrics_ = chosen(s.metrics, metrics, "metric");
+    regions_ = chosen(s.regions, regions, "region"), variants_ = chosen(s.variants, variants, "variant");
+    chosen({baseline_}, variants, "variant");
+    for (const Summary& x : summarise(results.rows)) means_[{x.scene, x.metric, x.variant, x.region}] = x.value.mean;
+    for (const Ratio& x : ratiosTo(results.rows, baseline_))
+      ratios_[{x.scene, x.metric, x.variant, x.region}] = x.value;
+  }
+  std::string text() const {
+    std::string all;
+    for (const std::string& metric : metrics_) {
+      for (const std::string& scene : scenes_) all += sceneTable(scene, metric);
+      if (scenes_.size() > 1) all += overScenes(metric);
+    }
+    return all;
+  }
+
+ private:
+  using Key = std::tuple<std::string, std::string, std::string, std::string>;
+
+  bool has(const std::string& scene, const std::string& metric, const std::string& region) const {
+    return std::any_of(variants_.begin(), variants_.end(), [&](const std::string& v) {
+      return means_.count({scene, metric, v, region}) > 0;
+    });
+  }
+  static std::string heading(const std::string& title, const std::string& columns, std::size_t count) {
+    std::string line = fmt::format("**{}**\n\n| variant |{}\n|---|", cellText(title), columns);
+    for (std::size_t i = 0; i < count; ++i) line += "---|";
+    return line + '\n';
+  }
+  std::string sceneTable(const std::string& scene, const std::string& metric) const {
+    std::vector<std::string> regions;
+    for (const std::string& r : regions_)
+      if (has(scene, metric, r)) regions.push_back(r);
+    if (regions.empty()) return {};
+    std::string columns;
+    for (const std::string& r : regions) columns += fmt::format(" {} | over {} |", cellText(r), cellText(baseline_));
+    std::string table = heading(scene + ", " + metric, columns, 2 * regions.size());
+    for (const std::string& v : variants_) {
+      table += "| " + cellText(v) + " |";
+      for (const std::string& r : regions) table += cells({scene, metric, v, r});
+      table += '\n';
+    }
+    return table + '\n';
+  }
+  std::string cells(const Key& key) const {
+    const auto mean = means_.find(key);
+    const auto ratio = ratios_.find(key);
+    const bool known = mean != means_.end() && std::isfinite(mean->second);
+    const std::string over = std::get<2>(key) == baseline_ ? "1"
+                             : ratio == ratios_.end()      ? "\u2013"
+                                                           : ratioText(ratio->second);
+    return fmt::format(" {} | {} |", known ? fmt::format("{:.4g}", mean->second) : "\u2013", over);
+  }
+  /// Geometric means over scenes, and the worst.
+  std::string overScenes(const std::string& metric) const {
+    std::string columns;
+    for (const std::string& r : regions_)
+      columns += fmt::format(" {} over {} | worst, in |", cellText(r), cellText(baseline_));
+    std::string table = heading("all scenes, " + metric, columns, 2 * regions_.size());
+    for (const std::string& v : variants_) {
+      if (v == baseline_) continue;
+      table += "| " + cellText(v) + " |";
+      for (const std::string& r : regions_) table += meanAndWorst(metric, v, r);
+      table += '\n';
+    }
+    return table + '\n';
+  }
+  std::string meanAndWorst(const std::string& metric, const std::string& variant, const std::string& region) const {
+    double logs = 0, worst = 0;
+    int count = 0;
+    std::string where;
+    for (const std::string& scene : scenes_) {
+      const auto ratio = ratios_.find({scene, metric, variant, region});
+      if (ratio == ratios_.end() || !(ratio->second.mean > 0)) continue;
+      logs += std::log(ratio->second.mean), ++count;
+      if (ratio->second.mean > worst) worst = ratio->second.mean, where = scene;
+    }
+    if (count == 0) return " \u2013 | \u2013 |";
+    return fmt::format(" {:.3f} | {:.3f}, {} |", std::exp(logs / count), worst, cellText(where));
+  }
+
+  std::string baseline_;
+  std::vector<std::string> scenes_, metrics_, regions_, variants_;
+  std::map<Key, double> means_;
+  std::map<Key, core::Interval> ratios_;
+};
+
+}  // namespace
+
+std::string markdownTables(const Results& results, const MarkdownSelection& selection) {
+  return Tables(results, selection).text();
+}
+
+}  // namespace experiments
