@@ -61,6 +61,13 @@ TEST(Walk, IsExactAlongARow) {
     }
 }
 
+/// Where every frame's steps are this one's.
+template <class Real>
+Real likenessOf(const TapPairs& p, Real death, Real freshShare) {
+  return twohistory::tapLikeness(p, {static_cast<Real>(p.alongRow()), static_cast<Real>(p.alongColumn())}, death,
+                                 freshShare);
+}
+
 /// Stationary variance of a pixel that the rule predicts, with the fresh share that a settled walk has.
 double predictedBy(const TapPairs& p, double kept, double likeness) {
   return 1 / (1 - kept * (1 - double(p.all()) * (1 - likeness)));
@@ -73,8 +80,7 @@ TEST(Walk, InThePlaneIsWithinFivePercentOfWhatItSolves) {
     for (const double kept : {0.36, 0.64, 0.81, 0.9025}) {
       const TapPairs p = twohistory::pairsOf(tapsAt(x, y, 64), 64);
       const double truth = Settled(x, y, kept, false).at(0, 0), share = 1 / truth;
-      worst =
-          std::max(worst, std::abs(truth / predictedBy(p, kept, twohistory::tapLikeness(p, 1 / kept - 1, share)) - 1));
+      worst = std::max(worst, std::abs(truth / predictedBy(p, kept, likenessOf(p, 1 / kept - 1, share)) - 1));
       double power = 0;  // controls: b^1.5 and b^2
       for (const float b : tapsAt(x, y, 64).b) power += std::pow(double(b), 1.5);
       worstPower = std::max(worstPower, std::abs(truth * (1 - kept * power) - 1));
@@ -83,6 +89,18 @@ TEST(Walk, InThePlaneIsWithinFivePercentOfWhatItSolves) {
   EXPECT_LT(worst, 0.05);
   EXPECT_GT(worstPower, 0.15);
   EXPECT_GT(worstSquare, 0.5);
+}
+
+TEST(Walk, StepsOfThePastAreLikelyNearerToTheirMean) {
+  float before = 0;
+  for (const float f : {0.001f, 0.02f, 0.1f, 0.25f, 0.5f}) {
+    const TapPairs p = twohistory::pairsOf(tapsAt(f, 0, 9), 9);
+    const auto steps = twohistory::likelySteps<float>(p);
+    EXPECT_EQ(steps.y, 0);
+    EXPECT_GT(steps.x, before);
+    EXPECT_LE(std::abs(steps.x - 1 / 3.0f), std::abs(p.alongRow() - 1 / 3.0f));
+    before = steps.x;
+  }
 }
 
 TEST(TapPairs, AreTheStepsOfTheWalkWhateverTheOrder) {
@@ -103,21 +121,20 @@ TEST(TapPairs, AreTheStepsOfTheWalkWhateverTheOrder) {
 TEST(Likeness, IsNothingAtFirstAndGrowsWithAgeUpToOne) {
   const TapPairs p = twohistory::pairsOf(tapsAt(0.3f, 0.4f, 9), 9);
   float before = 0;
-  EXPECT_LT(twohistory::tapLikeness(p, twohistory::deathRate(0.0f, 1.0f, 0.0f), 0.0f), 1e-5f);
+  EXPECT_LT(likenessOf(p, twohistory::deathRate(0.0f, 1.0f, 0.0f), 0.0f), 1e-5f);
   for (const float decay : {0.2f, 0.5f, 0.8f, 0.95f, 0.98f, 0.999f, 0.99999f}) {
-    const float death = twohistory::deathRate(decay / (1 - decay), 1.0f, decay),
-                r = twohistory::tapLikeness(p, death, 0.0f);
+    const float death = twohistory::deathRate(decay / (1 - decay), 1.0f, decay), r = likenessOf(p, death, 0.0f);
     EXPECT_GT(r, before);
     EXPECT_LE(r, 1);
-    EXPECT_GE(r, twohistory::tapLikeness(p, death, 0.5f));  // what is fresh is no neighbour's
+    EXPECT_GE(r, likenessOf(p, death, 0.5f));  // what is fresh is no neighbour's
     before = r;
   }
   EXPECT_GT(before, 0.9f);
-  EXPECT_GT(before, 1.2f * twohistory::tapLikeness(p, twohistory::deathRate(1e5f, 1.0f, 0.99999f), 0.5f));
+  EXPECT_GT(before, 1.2f * likenessOf(p, twohistory::deathRate(1e5f, 1.0f, 0.99999f), 0.5f));
   for (const float age : {0.0f, 1e-30f, 1e7f, 1e30f})
     for (const float factor : {0.0f, 1e-30f, 0.5f, 1.0f})
       for (const float share : {0.0f, 1.0f}) {
-        const float r = twohistory::tapLikeness(p, twohistory::deathRate(age, 1.0f, factor), share);
+        const float r = likenessOf(p, twohistory::deathRate(age, 1.0f, factor), share);
         EXPECT_TRUE(r >= 0 && r <= 1) << age << ", " << factor << ", " << share << ": " << r;
       }
 }

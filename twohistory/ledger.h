@@ -119,11 +119,12 @@ TapSums<K, Real> sumTaps(const Taps& taps, const Before& before) {
 /// How alike the taps of each history are (mixing.h). a: what the frame does to it; n: its samples.
 template <int K, class Real>
 std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const Advance<K, Real>& a, Real n) {
+  const WalkSteps<Real> steps = likelySteps<Real>(pairs);
   std::array<Real, K> r;
   for (int j = 0; j < K; ++j) {
     const int i = pairIndex<K>(j, j);
     const Real noise = sums.ledger.powerSums[i] + sums.shared[i], added = n > 0 ? a.fresh[j] * a.fresh[j] / n : Real(0);
-    r[j] = noise > 0 ? tapLikeness(pairs, deathRate(sums.ledger.ageSum[j], sums.ledger.weight[j], a.factor[j]),
+    r[j] = noise > 0 ? tapLikeness(pairs, steps, deathRate(sums.ledger.ageSum[j], sums.ledger.weight[j], a.factor[j]),
                                    std::min(Real(1), added / noise))
                      : Real(0);
   }

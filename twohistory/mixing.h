@@ -7,6 +7,7 @@
 // a random walk that dies at the rate u = 1 / d^2 - 1. Where it has settled R_n = rho^|n| R_0, and
 //
 //   [ledger walk]   rho + 1 / rho = 2 + 2 u / s
+//   [ledger step]   s -> s + 0.9 s / (s + 0.05) (1/3 - s), what past steps were likely like, if this frame's is s
 //   [ledger plane]  u -> (u + l) / (1 - l), l = s (1 - rho) of the other axis: leaving a row is like dying there
 //   [ledger alike]  r = min(1, rho (1/4 + 3/4 min(3, (1 - F) / O))), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
 //
@@ -57,10 +58,25 @@ Real walkCorrelation(Real death, Real step) {
   return step / (step + death + std::sqrt(death * (death + 2 * step)));  // [ledger walk], without cancelling terms
 }
 
-/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; death: u > 0; freshShare: F in [0, 1].
+/// Steps of the walk along a row and a column, each in [0, 1/2].
 template <class Real>
-Real tapLikeness(const TapPairs& p, Real death, Real freshShare) {
-  const Real sx = p.alongRow(), sy = p.alongColumn(), all = p.all();
+struct WalkSteps {
+  Real x, y;
+};
+
+/// What past frames' steps were likely like: between this frame's and the mean of a fraction of a pixel that is
+/// anything, 1/3. An axis along which nothing moves stays so.
+template <class Real>
+WalkSteps<Real> likelySteps(const TapPairs& p) {
+  const auto likely = [](Real s) { return s + Real(0.9) * s / (s + Real(0.05)) * (Real(1) / 3 - s); };  // [ledger step]
+  return {likely(p.alongRow()), likely(p.alongColumn())};
+}
+
+/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; steps: of the frames before; death: u > 0;
+/// freshShare: F in [0, 1].
+template <class Real>
+Real tapLikeness(const TapPairs& p, const WalkSteps<Real>& steps, Real death, Real freshShare) {
+  const Real sx = steps.x, sy = steps.y, all = p.all();
   const Real lostX = sx * (1 - walkCorrelation(death, sx)), lostY = sy * (1 - walkCorrelation(death, sy));
   const Real x = walkCorrelation(death + lostY, sx * (1 - lostY));  // [ledger plane], both divided by 1 - l
   const Real y = walkCorrelation(death + lostX, sy * (1 - lostX));
@@ -76,7 +92,7 @@ Real deathRate(Real ageSum, Real weight, Real factor) {
   const auto rate = [](Real inverseSurvival) { return inverseSurvival * inverseSurvival - 1; };
   const Real byAge = ageSum > 0 ? rate((ageSum + weight) / ageSum) : Real(1e7);
   const Real byDecay = factor > 0 ? rate(1 / factor) : Real(1e7);
-  return std::clamp(Real(0.2) * byAge + Real(0.8) * byDecay, Real(1e-12), Real(1e6));  // [ledger death]
+  return std::clamp(Real(0.4) * byAge + Real(0.6) * byDecay, Real(1e-12), Real(1e6));  // [ledger death]
 }
 
 }  // namespace twohistory

@@ -1,8 +1,8 @@
 // Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
-// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, but for the longest
-// history, which is known to exceed it (kLongestMost). The controls are power sums that mix with b^2 and with b^1.5.
-// Relative standard error of a ratio: below 0.3 % (printed ratios are means over 1,500 pixels and 400
-// sequences).
+// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, but in the margin from
+// which the image comes in (kMarginMost). The controls are power sums that mix with b^2 and with b^1.5.
+// Relative standard error of a ratio: below 0.5 % (means over some 1,000 pixels or more and 150 sequences), of a still
+// difference below 0.8 %.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -22,7 +22,11 @@ using twohistory::Policy;
 using twohistory::Taps;
 using twohistory::Weighting;
 
-constexpr int kWidth = 64, kHeight = 48, kFrames = 60, kSequences = 400, kMargin = 8, kHistories = 5;
+constexpr int kWidth = 128, kHeight = 96, kFrames = 60, kSequences = 150, kHistories = 5;
+/// Pixels that what moves half a pixel a frame, or what the turn moves, comes from beyond the image's edge in 60
+/// frames.
+constexpr int kMargin = 32;
+constexpr int kRegions = 4;  ///< all, fovea, periphery; and what lies in the margin
 constexpr Policy decaying(Weighting weighting, double decay) {
   return {weighting, twohistory::Forgetting::decay, decay};
 }
@@ -156,10 +160,10 @@ std::array<core::Image<float>, kHistories> simulate(const Course& c, std::uint64
   return before;
 }
 
-/// Mean true over mean predicted variance; [ledger][combination][region: all, fovea, periphery]. NaN where a region is
+/// Mean true over mean predicted variance; [ledger][combination][region]. NaN where a region is
 /// empty.
 struct Calibration {
-  double ratio[3][kHistories + 1][3];
+  double ratio[3][kHistories + 1][kRegions];
   double difference[2];  ///< of the window's mean, of U and of W .98
 };
 
@@ -169,7 +173,7 @@ using Sequences = std::vector<std::array<core::Image<float>, kHistories>>;
 /// true over mean predicted variance [blend noise2]; the prediction adds pixels up as if they were independent.
 constexpr int kReference = 4, kRadius = 3;
 
-double calibrateDifference(const Course& course, const Sequences& all, int j) {
+double calibrateDifference(const Course& course, const Sequences& all, int j, int margin) {
   double truth = 0, claim = 0;
   const auto overWindow = [](int x, int y, const auto& value) {
     double sum = 0;
@@ -177,8 +181,8 @@ double calibrateDifference(const Course& course, const Sequences& all, int j) {
       for (int u = x - kRadius; u <= x + kRadius; ++u) sum += value(u, v);
     return sum;
   };
-  for (int y = kMargin; y < kHeight - kMargin; y += 2)
-    for (int x = kMargin; x < kWidth - kMargin; x += 2) {
+  for (int y = margin; y < kHeight - margin; y += 2)
+    for (int x = margin; x < kWidth - margin; x += 2) {
       claim += overWindow(x, y, [&](int u, int v) {
         return static_cast<double>(twohistory::pairOf(course.ledgers[0](u, v), j, kReference).difference());
       });
@@ -192,10 +196,10 @@ double calibrateDifference(const Course& course, const Sequences& all, int j) {
 }
 
 /// ratio: by region. The weights of p_opt are the library's, whichever ledger predicts.
-void calibrateOne(const Course& course, const Sequences& all, int rule, int which, double (&ratio)[3]) {
-  double truth[3]{}, claim[3]{};
-  for (int y = kMargin; y < kHeight - kMargin; ++y)
-    for (int x = kMargin; x < kWidth - kMargin; ++x) {
+void calibrateOne(const Course& course, const Sequences& all, int rule, int which, double (&ratio)[kRegions]) {
+  double truth[kRegions]{}, claim[kRegions]{};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
       const auto w = combination(course.ledgers[0](x, y), which);
       double square = 0;
       for (const auto& h : all) {
@@ -203,12 +207,13 @@ void calibrateOne(const Course& course, const Sequences& all, int rule, int whic
         for (int j = 0; j < kHistories; ++j) value += double(w[j]) * double(h[j](x, y));
         square += value * value / kSequences;
       }
-      for (const int region : {0, course.fovea(x, y) ? 1 : 2}) {
-        truth[region] += square;
-        claim[region] += predicted(course.ledgers[rule](x, y), w);
-      }
+      const double claimed = predicted(course.ledgers[rule](x, y), w);
+      const bool inside = x >= kMargin && y >= kMargin && x < kWidth - kMargin && y < kHeight - kMargin;
+      const int region = !inside ? 3 : course.fovea(x, y) ? 1 : 2;
+      truth[region] += square, claim[region] += claimed;
+      if (inside) truth[0] += square, claim[0] += claimed;
     }
-  for (int r = 0; r < 3; ++r) ratio[r] = truth[r] / claim[r];
+  for (int r = 0; r < kRegions; ++r) ratio[r] = truth[r] / claim[r];
 }
 
 Calibration calibrate(const Motion& motion) {
@@ -216,8 +221,10 @@ Calibration calibrate(const Motion& motion) {
   Sequences all(kSequences);
   core::forEachIndex(kSequences, [&](std::size_t s) { all[s] = simulate(course, s + 1); });
   Calibration result;
-  result.difference[0] = calibrateDifference(course, all, 0),
-  result.difference[1] = calibrateDifference(course, all, 3);
+  const bool isStill = motion.step == vec2(0) && motion.wander == 0 && motion.rotation == 0;
+  const int margin = isStill ? kRadius : kMargin;
+  result.difference[0] = calibrateDifference(course, all, 0, margin);
+  result.difference[1] = calibrateDifference(course, all, 3, margin);
   for (int rule = 0; rule < 3; ++rule)
     for (int which = 0; which <= kHistories; ++which) calibrateOne(course, all, rule, which, result.ratio[rule][which]);
   return result;
@@ -228,29 +235,27 @@ constexpr const char* kCombination[] = {"U", "W", "F", "W .98", "F .6", "p_opt(U
 void print(const Motion& m, const Calibration& c) {
   for (int k = 0; k <= kHistories; ++k) {
     fmt::print("| {} | {} |", m.name, kCombination[k]);
-    for (const auto& rule : c.ratio) fmt::print(" {:.2f} / {:.2f} / {:.2f} |", rule[k][0], rule[k][1], rule[k][2]);
+    for (const auto& rule : c.ratio)
+      fmt::print(" {:.2f} / {:.2f} / {:.2f}, {:.2f} |", rule[k][0], rule[k][1], rule[k][2], rule[k][3]);
     fmt::print("\n");
   }
   fmt::print("| {} | mean difference from F .6 of U, of W .98 | {:.2f}, {:.2f} | | |\n", m.name, c.difference[0],
              c.difference[1]);
 }
 
-/// What the longest history, W .98, keeps to under bilinear motion in place of 1.25, and where every frame is half a
-/// pixel along a row: where the fovea was it remembers one burst, which is more alike than its age says
-/// (docs/results.md, section 10).
-constexpr int kLongest = 3;
-constexpr double kLongestMost = 1.35, kLongestAlongARow = 1.7;
+/// What is kept to in the margin, where image comes in: a pixel at the edge has nothing but itself to be mixed with, so
+/// its neighbours fill with what it remembers, and are more alike than a walk without an edge makes them.
+constexpr double kMarginMost = 1.5;
 
-/// longestMost: what the longest history keeps to.
-Calibration expectWithin(const Motion& m, double low, double high, double longestMost) {
+Calibration expectWithin(const Motion& m, double low, double high, double marginMost = kMarginMost) {
   const Calibration c = calibrate(m);
   print(m, c);
   for (int k = 0; k <= kHistories; ++k)
-    for (int r = 0; r < 3; ++r) {
+    for (int r = 0; r < kRegions; ++r) {
       const double ratio = c.ratio[0][k][r];
-      if (std::isnan(ratio) && r > 0 && m.counts != Counts::fovea) continue;
+      if (std::isnan(ratio) && (r == 1 || r == 2) && m.counts != Counts::fovea) continue;
       EXPECT_GT(ratio, low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(ratio, k == kLongest ? longestMost : high) << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(ratio, r == 3 ? marginMost : high) << m.name << ", " << kCombination[k] << ", region " << r;
     }
   return c;
 }
@@ -265,21 +270,21 @@ TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) {
 TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
   for (const Motion& m : {Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0}, Motion{"0.1, 0", vec2(0.1f, 0), 0, 0},
                           Motion{"random", vec2(0), 1, 0}, Motion{"turn 0.5 degrees", vec2(0), 0, 0.5f}})
-    expectWithin(m, 0.8, 1.25, kLongestMost);
+    expectWithin(m, 0.8, 1.25);
   // Mixing taps makes pixels quieter and their neighbours alike, and a window's mean no quieter at all. So blends take
   // measured spreads beside the prediction (twohistory/lag.h).
-  const Calibration half = expectWithin({"0.5, 0.5", vec2(0.5f), 0, 0}, 0.8, 1.25, kLongestMost);
+  const Calibration half = expectWithin({"0.5, 0.5", vec2(0.5f), 0, 0}, 0.8, 1.25);
   for (const double ratio : half.difference) EXPECT_GT(ratio, 1.25);
 }
 TEST(PredictedVariance, OfMotionAlongARowIsWithinAQuarterWhereControlsClaimTooLittle) {
-  const Calibration c = expectWithin({"0.5, 0", vec2(0.5f, 0), 0, 0}, 0.8, 1.25, kLongestAlongARow);
+  const Calibration c = expectWithin({"0.5, 0", vec2(0.5f, 0), 0, 0}, 0.8, 1.25);
   EXPECT_GT(c.ratio[1][0][0], 1.8);   // b^2, history U
   EXPECT_GT(c.ratio[2][0][0], 1.25);  // b^1.5
   EXPECT_GT(c.ratio[2][0][1], 1.5);
 }
 TEST(PredictedVariance, OfChangingCountsIsWithinAQuarter) {
-  expectWithin({"0.37, 0.21, checkerboard", vec2(0.37f, 0.21f), 0, 0, Counts::checkerboard}, 0.8, 1.25, kLongestMost);
-  expectWithin({"0.5, 0, random counts", vec2(0.5f, 0), 0, 0, Counts::random}, 0.8, 1.25, kLongestAlongARow);
+  expectWithin({"0.37, 0.21, checkerboard", vec2(0.37f, 0.21f), 0, 0, Counts::checkerboard}, 0.8, 1.25);
+  expectWithin({"0.5, 0, random counts", vec2(0.5f, 0), 0, 0, Counts::random}, 0.8, 1.25);
 }
 
 }  // namespace
