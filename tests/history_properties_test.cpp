@@ -237,40 +237,55 @@ TEST(Bookkeeping, AResetIsAFreshStart) {
   EXPECT_GT(differs, static_cast<int>(kSchedules / 2));
 }
 
+/// Four neighbours of random pasts, and random weights of them.
+struct Neighbours {
+  core::Image<Ledger<3>> ledgers{2, 2};
+  core::Image<float> values{2, 2};
+  twohistory::Taps taps{{0, 1, 2, 3}, {}};
+
+  Neighbours(std::uint32_t schedule, core::Rng& rng) {
+    float sum = 0;
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      ledgers.data()[k] = ledgerOf<float>(randomSchedule(schedule + k));
+      values.data()[k] = rng.uniform();
+      sum += taps.b[k] = rng.uniform();
+    }
+    for (float& b : taps.b) b /= sum;
+  }
+  /// Of history 1.
+  float valueAt(const twohistory::Taps& t) const {
+    twohistory::Step step;
+    step.taps = twohistory::premultiplied<3>(t, ledgers.view(), 1);
+    return twohistory::Mean<float>{}.gather(values.view(), step);
+  }
+};
+
+std::array<int, 4> randomOrder(core::Rng& rng) {
+  std::array<int, 4> order{0, 1, 2, 3};
+  for (int k = 3; k > 0; --k) std::swap(order[k], order[rng.below(static_cast<std::uint32_t>(k) + 1)]);
+  return order;
+}
+
 TEST(Bookkeeping, DoesNotDependOnTheOrderOfTaps) {
   const auto near = [](float a, float b) { return std::abs(a - b) <= 2e-6f * a; };
-  const twohistory::Mean<float> mean;
   int moved = 0;  // control: the same weights on other taps
   for (std::uint32_t i = 0; i < kSchedules; ++i) {
     core::Rng rng(25, core::Pass::other, i, 0);
-    core::Image<Ledger<3>> before(2, 2);
-    core::Image<float> value(2, 2);
+    const Neighbours four(i, rng);
+    const std::array<int, 4> order = randomOrder(rng);
+    twohistory::Taps turned, other;
     for (int k = 0; k < 4; ++k) {
-      before(k % 2, k / 2) = ledgerOf<float>(randomSchedule(i + static_cast<std::uint32_t>(k)));
-      value(k % 2, k / 2) = rng.uniform();
+      turned.pixel[k] = order[k], turned.b[k] = four.taps.b[order[k]];
+      other.pixel[k] = order[k], other.b[k] = four.taps.b[k];
     }
-    std::array<int, 4> order{0, 1, 2, 3};
-    for (int k = 3; k > 0; --k) std::swap(order[k], order[rng.below(static_cast<std::uint32_t>(k) + 1)]);
-    twohistory::Taps taps{{0, 1, 2, 3}, {rng.uniform(), rng.uniform(), rng.uniform(), rng.uniform()}}, turned, other;
-    const float sum = taps.b[0] + taps.b[1] + taps.b[2] + taps.b[3];
-    for (float& b : taps.b) b /= sum;
-    for (int k = 0; k < 4; ++k) {
-      turned.pixel[k] = order[k], turned.b[k] = taps.b[order[k]];
-      other.pixel[k] = order[k], other.b[k] = taps.b[k];
-    }
-    const auto valueOf = [&](const twohistory::Taps& t) {
-      twohistory::Step step;
-      step.taps = twohistory::premultiplied<3>(t, before.view(), 1);
-      return mean.gather(value.view(), step);
-    };
     const auto n = static_cast<float>(rng.below(9));
     const auto gathered = [&](const twohistory::Taps& t) {
-      return gather<3, float>(t, before, randomSchedule(i).policies, n);
+      return gather<3, float>(t, four.ledgers, randomSchedule(i).policies, n);
     };
-    const Ledger<3> a = gathered(taps), b = gathered(turned);
+    const Ledger<3> a = gathered(four.taps), b = gathered(turned);
     for (int j = 0; j < 3; ++j) ASSERT_TRUE(near(a.weight[j], b.weight[j]) && near(a.ageSum[j], b.ageSum[j]));
     for (int j = 0; j < Ledger<3>::kPairs; ++j) ASSERT_TRUE(near(a.powerSums[j], b.powerSums[j]));
-    ASSERT_TRUE(near(valueOf(taps), valueOf(turned))) << "schedule " << i;
+    ASSERT_TRUE(near(four.valueAt(four.taps), four.valueAt(turned))) << "schedule " << i;
     moved += !near(a.ageSum[2], gathered(other).ageSum[2]);
   }
   EXPECT_GT(moved, static_cast<int>(kSchedules / 2));
