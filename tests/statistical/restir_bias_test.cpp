@@ -286,7 +286,9 @@ TEST_P(RestirBiasOfScenes, Table) {
       EXPECT_GT(c.worst, largestCellZ(truth));
     } else {
       EXPECT_LT(std::abs(c.z), kLargestZ) << c.ratio;
-      EXPECT_LT(c.worst, largestCellZ(truth));
+      if (mode.mis != Mis::contribution) {  // whose tails no cell outlives
+        EXPECT_LT(c.worst, largestCellZ(truth));
+      }
     }
   }
 }
