@@ -8,7 +8,6 @@
 #include <tuple>
 
 #include "core/check.h"
-#include "experiments/json_text.h"
 #include "experiments/names.h"
 #include "experiments/summary.h"
 
@@ -16,14 +15,12 @@ namespace experiments {
 
 namespace {
 
-std::string joined(const std::vector<std::string>& names) { return fmt::format("{}", fmt::join(names, ", ")); }
-
 /// What was asked for, or all there is. kind: for the error.
 std::vector<std::string> chosen(const std::vector<std::string>& wanted, const Names& present, const char* kind) {
   for (const std::string& name : wanted)
     if (!present.has(name))
       throw core::UsageError(name, std::string("the results have no such ") + kind,
-                             "choose among " + joined(present.inOrder()));
+                             fmt::format("choose among {}", fmt::join(present.inOrder(), ", ")));
   return wanted.empty() ? present.inOrder() : wanted;
 }
 

@@ -12,6 +12,7 @@
 // blending"; the recursion for any pair of decays is this project's.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 

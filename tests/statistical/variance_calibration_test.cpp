@@ -1,8 +1,8 @@
 // Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
-// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, but in the margin from
-// which the image comes in (kMarginMost). The controls are power sums that mix with b^2 and with b^1.5.
-// Relative standard error of a ratio: below 0.5 % (means over some 1,000 pixels or more and 150 sequences), of a still
-// difference below 0.8 %.
+// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, but for the
+// longest history in the margin from which the image comes in (kMarginMost). The controls are power sums that mix with
+// b^2 and with b^1.5. Relative standard error of a ratio: below 0.5 % (means over some 1,000 pixels or more and 150
+// sequences), of a still difference below 0.8 %.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -243,8 +243,10 @@ void print(const Motion& m, const Calibration& c) {
              c.difference[1]);
 }
 
-/// What is kept to in the margin, where image comes in: a pixel at the edge has nothing but itself to be mixed with, so
-/// its neighbours fill with what it remembers, and are more alike than a walk without an edge makes them.
+/// What the longest history, W .98, keeps to in the margin, where image comes in: a pixel at the edge has nothing but
+/// itself to be mixed with, so its neighbours fill with what it remembers, and are more alike than a walk without an
+/// edge makes them.
+constexpr int kLongest = 3;
 constexpr double kMarginMost = 1.5;
 
 Calibration expectWithin(const Motion& m, double low, double high, double marginMost = kMarginMost) {
@@ -255,7 +257,8 @@ Calibration expectWithin(const Motion& m, double low, double high, double margin
       const double ratio = c.ratio[0][k][r];
       if (std::isnan(ratio) && (r == 1 || r == 2) && m.counts != Counts::fovea) continue;
       EXPECT_GT(ratio, low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(ratio, r == 3 ? marginMost : high) << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(ratio, r == 3 && k == kLongest ? marginMost : high)
+          << m.name << ", " << kCombination[k] << ", region " << r;
     }
   return c;
 }
@@ -270,7 +273,7 @@ TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) {
 TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
   for (const Motion& m : {Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0}, Motion{"0.1, 0", vec2(0.1f, 0), 0, 0},
                           Motion{"random", vec2(0), 1, 0}, Motion{"turn 0.5 degrees", vec2(0), 0, 0.5f}})
-    expectWithin(m, 0.8, 1.25);
+    EXPECT_GT(expectWithin(m, 0.8, 1.25).ratio[1][0][0], 1.25) << "control b^2, " << m.name;
   // Mixing taps makes pixels quieter and their neighbours alike, and a window's mean no quieter at all. So blends take
   // measured spreads beside the prediction (twohistory/lag.h).
   const Calibration half = expectWithin({"0.5, 0.5", vec2(0.5f), 0, 0}, 0.8, 1.25);
