@@ -40,7 +40,8 @@ std::vector<Variant>& extensions() {
 }
 
 /// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one. A blend whose lag is taken
-/// away can afford a longer W and profits from a faster F.
+/// away can afford a longer W and profits from a faster F; if no history weighs samples, none lags less where there are
+/// more of them, so that no border of counts shows.
 std::vector<Variant> ownLibrary() {
   const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
   Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
@@ -56,6 +57,10 @@ std::vector<Variant> ownLibrary() {
   debiased.name = "lag-debiased";
   debiased.histories = {u, samples(0.98), samples(0.6)};
   debiased.blend.correction = 1;
+  Variant even = debiased;
+  even.name = "lag-even";
+  even.histories = {u, frames(0.98), frames(0.5)};
+  even.blend.validation.agreement = 0.1f;
   return {make("none", {frames(0)}),
           make("unweighted", {u}),
           make("unweighted-96", {frames(0.96)}),
@@ -74,6 +79,7 @@ std::vector<Variant> ownLibrary() {
           checked,
           bold,
           debiased,
+          even,
           make("oracle", {u, w}, BlendMode::oracle)};
 }
 

@@ -40,7 +40,7 @@ struct Extension {
 
 /// The variants of the field and of this project by name: none, unweighted, unweighted-96, unweighted-98, weighted,
 /// published, optimal, optimal-uwf, seed, seed-slide, consistent, lag-uw, lag-wf, lag-safe, lag-uwf, lag-checked,
-/// lag-bold, lag-debiased, oracle; then those of extensions.
+/// lag-bold, lag-debiased, lag-even, oracle; then those of extensions.
 std::vector<std::string> variantNames();
 /// Throws core::UsageError, naming the known ones, for any other name.
 Variant variantByName(const std::string& name);

@@ -95,6 +95,11 @@ TEST(Evidence, BeginsACorrectionFromWhatIsProven) {
   const Evidence few = simulate({1, 1, 0.9f}, 1, 3), many = simulate({1, 1, 0.1f}, 1, 200'000);
   EXPECT_GT(few.solve({}, 0.9f)[q], few.solve({})[q] + 0.5f);
   EXPECT_NEAR(many.solve({}, 0.9f)[q], 0.1f, 0.02f);
+  ValidationParameters firm;
+  firm.agreement = 0.02f;  // regimes stay closer to what all have proven; that itself is not affected
+  const Evidence some = simulate({1, 1, 0.1f}, 1, 300);
+  EXPECT_GT(some.solve(firm, 0.9f)[q], some.solve({}, 0.9f)[q] + 0.2f);
+  EXPECT_EQ(some.solve(firm), some.solve({}));
 }
 
 TEST(Evidence, BelievesTheBlendUntilThereIsSome) {

@@ -88,17 +88,17 @@ Vector leastInCube(const System& m, const Vector& right) {
 
 }  // namespace
 
-Shifts Evidence::solve(const ValidationParameters& p, float proven) const {
-  Shifts result{1, 1, proven};
+Shifts Evidence::solve(const ValidationParameters& p, const Prior& correction) const {
+  Shifts result{1, 1, correction.mean};
   const double residual = sum[kSums - 2], count = sum[kSums - 1];
   if (!(count > 0) || !(residual > 0)) return result;
   System m;
   Vector right;
   int next = kShifts;
   for (int j = 0; j < kShifts; ++j) {
-    const double tau = static_cast<double>(j == kCorrection ? p.proof : p.trust);
+    const double tau = static_cast<double>(j == kCorrection ? correction.deviation : p.trust);
     const double prior = residual / count / (tau * tau);  // [check prior]
-    right[j] = sum[j] + (j == kCorrection ? static_cast<double>(proven) : 1) * prior;
+    right[j] = sum[j] + (j == kCorrection ? static_cast<double>(correction.mean) : 1) * prior;
     for (int k = 0; k <= j; ++k) m[j][k] = m[k][j] = sum[next++] + (j == k ? prior : 0);
   }
   const Vector theta = leastInCube(m, right);  // [check theta]

@@ -14,7 +14,8 @@
 //
 //   [check proven]  theta_0 of a regime's correction = theta_q^4 of all regimes together
 //
-// so that a correction that is certain elsewhere makes no step where evidence of a regime is scarce.
+// so that a correction that is certain elsewhere makes no step where evidence of a regime is scarce. Histories of which
+// none weighs samples do not know what count is usual; all their pixels are of one regime.
 #pragma once
 
 #include <array>
@@ -29,10 +30,11 @@ namespace twohistory {
 
 struct ValidationParameters {
   bool on = false;
-  float decay = 0.9f;   ///< of the sums, a frame
-  float trust = 1;      ///< tau: standard deviation of theta around 1 before any check
-  float proof = 0.25f;  ///< tau_c: the same of the correction's theta, around 0: it must be proven first
-  float shared = 1;     ///< how many tiles the whole frame's evidence counts for beside a tile and its neighbours
+  float decay = 0.9f;       ///< of the sums, a frame
+  float trust = 1;          ///< tau: standard deviation of theta around 1 before any check
+  float proof = 0.25f;      ///< tau_c: the same of the correction's theta, around 0: it must be proven first
+  float agreement = 0.25f;  ///< tau_c of a regime's correction, around what all regimes have proven
+  float shared = 1;         ///< how many tiles the whole frame's evidence counts for beside a tile and its neighbours
 };
 
 template <class V>
@@ -41,6 +43,8 @@ void describe(V& v, ValidationParameters& p) {
   v("decay", p.decay, "of the evidence, a frame", 0.0, 1.0);
   v("trust", p.trust, "standard deviation of the factor around 1 before any evidence", 1e-3, 1e3);
   v("proof", p.proof, "standard deviation of the correction's factor around 0 before any evidence", 1e-3, 1e3);
+  v("agreement", p.agreement, "standard deviation of a regime's factor of the correction around what all have proven",
+    1e-3, 1e3);
   v("shared", p.shared, "tiles that the whole frame's evidence counts for beside a tile and its neighbours", 0.0, 1e6);
 }
 
@@ -90,8 +94,17 @@ struct Evidence {
   void add(const Innovation& r, const Shifts& shift);
   void accumulate(const Stored& other, double factor);
   Stored stored() const;
-  /// [check theta]. proven: theta_0 of the correction ([check proven]).
-  Shifts solve(const ValidationParameters& p, float proven = 0) const;
+  /// [check theta] of all regimes, whose correction must be proven.
+  Shifts solve(const ValidationParameters& p) const { return solve(p, {0, p.proof}); }
+  /// The same of one regime. proven: theta_0 of its correction ([check proven]).
+  Shifts solve(const ValidationParameters& p, float proven) const { return solve(p, {proven, p.agreement}); }
+
+ private:
+  /// theta_0 and tau_c of the correction.
+  struct Prior {
+    float mean, deviation;
+  };
+  Shifts solve(const ValidationParameters& p, const Prior& correction) const;
 };
 
 /// What a blend shifted a pixel by, and in which regime: lambda_j within [-4, 4] and the correction q, in units of X_0,

@@ -142,7 +142,7 @@ std::vector<Case> defaultCases() {
 std::vector<Json> defaultVariants() {
   return {"unweighted", "unweighted-96", "unweighted-98", "weighted", "published", "optimal",
           "seed",       "seed-slide",    "consistent",    "lag-uw",   "lag-wf",    "lag-safe",
-          "lag-uwf",    "lag-checked",   "lag-debiased",  "oracle"};
+          "lag-uwf",    "lag-checked",   "lag-debiased",  "lag-even", "oracle"};
 }
 
 }  // namespace experiments::lab
