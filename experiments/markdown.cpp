@@ -46,13 +46,17 @@ class Tables {
     scenes_ = chosen(s.scenes, scenes, "scene"), metrics_ = chosen(s.metrics, metrics, "metric");
     regions_ = chosen(s.regions, regions, "region"), variants_ = chosen(s.variants, variants, "variant");
     chosen({baseline_}, variants, "variant");
-    for (const Summary& x : summarise(results.rows)) means_[{x.scene, x.metric, x.variant, x.region}] = x.value.mean;
+    for (const Summary& x : summarise(results.rows)) means_[{x.scene, x.metric, x.variant, x.region}] = x.value;
     for (const Ratio& x : ratiosTo(results.rows, baseline_))
       ratios_[{x.scene, x.metric, x.variant, x.region}] = x.value;
   }
   std::string text() const {
     std::string all;
     for (const std::string& metric : metrics_) {
+      if (metric == kContrast) {
+        all += borderTable();
+        continue;
+      }
       for (const std::string& scene : scenes_) all += sceneTable(scene, metric);
       if (scenes_.size() > 1) all += overScenes(metric);
     }
@@ -60,6 +64,7 @@ class Tables {
   }
 
  private:
+  static constexpr const char* kContrast = "border_contrast2";
   using Key = std::tuple<std::string, std::string, std::string, std::string>;
 
   bool has(const std::string& scene, const std::string& metric, const std::string& region) const {
@@ -90,11 +95,49 @@ class Tables {
   std::string cells(const Key& key) const {
     const auto mean = means_.find(key);
     const auto ratio = ratios_.find(key);
-    const bool known = mean != means_.end() && std::isfinite(mean->second);
+    const bool known = mean != means_.end() && std::isfinite(mean->second.mean);
     const std::string over = std::get<2>(key) == baseline_ ? "1"
                              : ratio == ratios_.end()      ? "\u2013"
                                                            : ratioText(ratio->second);
-    return fmt::format(" {} | {} |", known ? fmt::format("{:.4g}", mean->second) : "\u2013", over);
+    return fmt::format(" {} | {} |", known ? fmt::format("{:.4g}", mean->second.mean) : "\u2013", over);
+  }
+  /// Steps of the mean image as Weber contrasts in %, 0 where the squared one is negative, and the ratio of the noise
+  /// outside to that inside; region by region in a cell.
+  std::string borderTable() const {
+    std::string columns;
+    for (const std::string& v : variants_) columns += " " + cellText(v) + " |";
+    std::string table = heading(
+        "contrast of the border in %, noise outside over inside; " + fmt::format("{}", fmt::join(bordered(), ", ")),
+        columns, variants_.size());
+    for (const std::string& scene : scenes_) {
+      table += "| " + cellText(scene) + " |";
+      for (const std::string& v : variants_) table += borderCell(scene, v);
+      table += '\n';
+    }
+    return table + '\n';
+  }
+  std::vector<std::string> bordered() const {
+    std::vector<std::string> regions;
+    for (const std::string& r : regions_)
+      if (std::any_of(scenes_.begin(), scenes_.end(), [&](const std::string& s) { return has(s, kContrast, r); }))
+        regions.push_back(r);
+    return regions;
+  }
+  std::string borderCell(const std::string& scene, const std::string& variant) const {
+    const auto percent = [](double squared) { return 100 * std::sqrt(std::max(0.0, squared)); };
+    std::vector<std::string> parts;
+    for (const std::string& r : regions_) {
+      const auto found = means_.find({scene, kContrast, variant, r});
+      if (found == means_.end() || !std::isfinite(found->second.mean)) continue;
+      const core::Interval& c = found->second;
+      std::string part = fmt::format("{:.1f}", percent(c.mean));
+      if (std::isfinite(c.low)) part += fmt::format(" [{:.1f}, {:.1f}]", percent(c.low), percent(c.high));
+      const auto noise = means_.find({scene, "border_noise", variant, r});
+      if (noise != means_.end() && std::isfinite(noise->second.mean))
+        part += fmt::format(", x{:.2f}", noise->second.mean);
+      parts.push_back(part);
+    }
+    return parts.empty() ? " \u2013 |" : fmt::format(" {} |", fmt::join(parts, " \\| "));
   }
   /// Geometric means over scenes, and the worst.
   std::string overScenes(const std::string& metric) const {
@@ -126,7 +169,7 @@ class Tables {
 
   std::string baseline_;
   std::vector<std::string> scenes_, metrics_, regions_, variants_;
-  std::map<Key, double> means_;
+  std::map<Key, core::Interval> means_;
   std::map<Key, core::Interval> ratios_;
 };
 
