@@ -79,6 +79,8 @@ TEST(LabSignal, StepsPulsesAndStripesAreWhereTheySay) {
   EXPECT_EQ(signalAt(s, vec2(0), s.at), s.high);
   s.kind = SignalKind::pulse;
   EXPECT_NEAR(signalAt(s, vec2(0), 8), 1.5f, 1e-4f);
+  s.apart = 0.25f;  // green follows red a quarter of the period of 32 later, blue half
+  EXPECT_LT(length(colourAt(s, vec2(0), 8) - core::vec3(1.5f, 1, 0.5f)), 1e-4f);
   s.kind = SignalKind::shadow;
   EXPECT_EQ(signalAt(s, vec2(3, 0), 0), signalAt(s, vec2(10, 0), 7));  // moves one pixel a frame
   s.kind = SignalKind::edge;

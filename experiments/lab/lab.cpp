@@ -63,12 +63,13 @@ class Job {
   std::vector<std::unique_ptr<FilterState>> states_;
 };
 
-void addRows(const std::string& scene, const std::string& variant, std::uint64_t seed, const Measure& m,
-             std::vector<Row>& rows) {
+void addRows(const Case& c, const std::string& variant, std::uint64_t seed, const Measure& m, std::vector<Row>& rows) {
   const auto add = [&](Region region, const char* metric, double value) {
-    rows.push_back({scene, variant, seed, std::string(regionName(region)), metric, value});
+    rows.push_back({c.name, variant, seed, std::string(regionName(region)), metric, value});
   };
   for (const Region region : kRegions) add(region, "MSE", m.squaredError(region));
+  if (c.signal.apart != 0)
+    for (const Region region : kRegions) add(region, "MSE_rgb", m.squaredColourError(region));
   for (const Region region : kBorders) add(region, "border_step", m.border(region).meanSquare());
   for (const Region region : kBorders) add(region, "border_noise", m.border(region).noiseRatio());
 }
@@ -125,7 +126,7 @@ Results runLab(const LabConfig& config) {
   Results results;
   for (std::size_t i = 0; i < jobs; ++i)
     for (std::size_t v = 0; v < variants.size(); ++v)
-      addRows(config.cases[i / seeds].name, variants[v].name, config.seeds[i % seeds], measures[i][v], results.rows);
+      addRows(config.cases[i / seeds], variants[v].name, config.seeds[i % seeds], measures[i][v], results.rows);
   for (std::size_t c = 0; c < config.cases.size(); ++c) {  // what only several seeds together can tell
     std::vector<BorderContrasts> contrasts;
     for (std::size_t s = 0; s < seeds; ++s)

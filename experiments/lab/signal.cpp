@@ -23,6 +23,8 @@ float spot(const SignalParameters& p, vec2 point, float t) {
   return p.low + p.amplitude * std::exp(-dot(d, d));
 }
 
+float pulse(const SignalParameters& p, float t) { return std::max(0.0f, 1 + p.amplitude * std::sin(turn(p, t))); }
+
 }  // namespace
 
 float signalAt(const SignalParameters& p, vec2 point, int frame) {
@@ -33,7 +35,7 @@ float signalAt(const SignalParameters& p, vec2 point, int frame) {
     case SignalKind::step:
       return frame < p.at ? 1 : p.high;
     case SignalKind::pulse:
-      return std::max(0.0f, 1 + p.amplitude * std::sin(turn(p, t)));
+      return pulse(p, t);
     case SignalKind::spot:
       return spot(p, point, t);
     case SignalKind::edge:
@@ -45,6 +47,12 @@ float signalAt(const SignalParameters& p, vec2 point, int frame) {
       break;
   }
   return 1;
+}
+
+core::vec3 colourAt(const SignalParameters& p, vec2 point, int frame) {
+  if (p.kind != SignalKind::pulse) return core::vec3(signalAt(p, point, frame));
+  const float t = static_cast<float>(frame), later = p.apart * p.period;
+  return {pulse(p, t), pulse(p, t - later), pulse(p, t - 2 * later)};
 }
 
 std::uint32_t surfaceAt(const SignalParameters& p, vec2 point) {

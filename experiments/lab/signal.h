@@ -22,6 +22,7 @@ struct SignalParameters {
   float period = 32;      ///< frames
   float size = 16;        ///< pixels
   float speed = 1;        ///< pixels a frame
+  float apart = 0;        ///< pulse: of its period, from one colour channel to the next
   int at = 48;            ///< frame of the step
   bool separate = false;  ///< edge, texture: the parts are surfaces of their own, so that edge-aware means see them
 };
@@ -45,12 +46,17 @@ void describe(V& v, SignalParameters& p) {
   v("period", p.period, "pulse, spot: frames", 1.0, 1e6);
   v("size", p.size, "spot: radius; edge, texture, shadow: width; pixels", 0.5, 1e6);
   v("speed", p.speed, "shadow: pixels a frame", -1e3, 1e3);
+  v("apart", p.apart, "pulse: how much later one colour channel is than the one before, of the period", -1.0, 1.0);
   v("at", p.at, "step: its frame", 0.0, 1e6);
   v("separate", p.separate, "edge, texture: the parts are surfaces of their own");
 }
 
-/// Radiance at a point of the plane, in pixels from its centre, in a frame; >= 0.
+/// Radiance of the red channel at a point of the plane, in pixels from its centre, in a frame; >= 0. That of all, but
+/// for pulses whose channels are apart.
 float signalAt(const SignalParameters& parameters, core::vec2 point, int frame);
+
+/// The same in RGB.
+core::vec3 colourAt(const SignalParameters& parameters, core::vec2 point, int frame);
 
 /// Which surface lies there: 0, or 0 and 1 in turn where the parts are separate.
 std::uint32_t surfaceAt(const SignalParameters& parameters, core::vec2 point);

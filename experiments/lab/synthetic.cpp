@@ -52,7 +52,7 @@ void Synthetic::fillTruth() {
   const int width = truth_.width(), height = truth_.height();
   core::forEachPixel(width, height, [&](int x, int y) {
     const vec2 plane = now.toPlane(centred(x, y, width, height));
-    truth_.view().store(x, y, vec3(signalAt(case_.signal, plane, frame_)));
+    truth_.view().store(x, y, colourAt(case_.signal, plane, frame_));
   });
 }
 
