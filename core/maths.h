@@ -10,6 +10,7 @@
 
 namespace core {
 
+using glm::dvec3;
 using glm::ivec2;
 using glm::mat4;
 using glm::quat;

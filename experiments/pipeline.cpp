@@ -58,7 +58,7 @@ void see(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, View
 }
 
 void shadeLights(const restir::RestirParameters& p, const restir::Frame& f, const Reservoirs& reservoirs,
-                 core::ImageView<float> check, PlanesView<float> radiance, PassTimes& t) {
+                 PlanesView<float> check, PlanesView<float> radiance, PassTimes& t) {
   restir::RestirState& s = reservoirs.first;
   timed(t, "draw candidates", [&] { restir::drawCandidates(p, f, s); });
   if (!check.empty()) timed(t, "check samples", [&] { restir::shadeCheckSamples(p, f, s, check); });
@@ -80,11 +80,11 @@ ShadeState::ShadeState(const Stage& stage, const ShadeParameters& p, std::uint64
       foveation_(p.foveation),
       view_(width, height),
       samples_(width, height),
-      check_(p.checkSamples ? width : 0, p.checkSamples ? height : 0),
       fovea_(width, height),
       restir_(width, height),
       radiance_(width, height),
-      albedo_(width, height) {
+      albedo_(width, height),
+      check_(p.checkSamples ? width : 0, p.checkSamples ? height : 0) {
   static_cast<void>(stage);
   if (p.restir.second.on) second_.emplace(width, height);
   if (p.diagnostics) diagnostics_.emplace(width, height);
@@ -103,7 +103,7 @@ Shaded shade(const Stage& stage, const ShadeParameters& p, std::uint32_t frame, 
   const core::Moment momentNow = now.moment(), momentBefore = before.moment();
   const restir::Frame f{momentNow, momentBefore, s.samples_, s.view_.taps(), s.seed_, p.tile};
   const bool checks = p.checkSamples && p.restir.reuse != restir::Reuse::none;  // else radiance itself is independent
-  const core::ImageView<float> check = checks ? s.check_.view() : core::ImageView<float>{};
+  const PlanesView<float> check = checks ? s.check_.view() : PlanesView<float>{};
   shadeLights(p.restir, f, {s.restir_, s.second_ ? &*s.second_ : nullptr}, check, s.radiance_, t);
   if (s.diagnostics_) timed(t, "diagnostics", [&] { s.diagnostics_->update(p.restir, f, s.restir_); });
   timed(t, "albedo", [&] { fillAlbedo(now.gbuffer.surfaces, s.albedo_); });

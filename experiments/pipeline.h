@@ -35,7 +35,7 @@ struct Shaded {
   core::PlanesView<const float> albedo, emission;
   core::In<float> samples;  ///< n that the radiance stands for, 0 = nothing new in this pixel
   core::Guide guide, guideBefore;
-  core::In<float> check;                      ///< luminance of independent results, negative where none; may be empty
+  core::PlanesView<const float> check;        ///< independent results, negative where there is none; may be empty
   core::In<twohistory::Taps> taps;            ///< where each pixel was in the frame before; none in the first frame
   core::In<float> confidence{}, effective{};  ///< for variants that are told so instead of samples; may be empty
 };
@@ -68,10 +68,10 @@ struct Reservoirs {
   restir::SecondHistory* second = nullptr;
 };
 
-/// The passes that sample light: candidates, reuse, shading. check: gets luminances of independent results (see
+/// The passes that sample light: candidates, reuse, shading. check: gets independent results (see
 /// restir::shadeCheckSamples); empty = none are wanted.
 void shadeLights(const restir::RestirParameters& parameters, const restir::Frame& frame, const Reservoirs& reservoirs,
-                 core::ImageView<float> check, core::PlanesView<float> radiance, PassTimes& times);
+                 core::PlanesView<float> check, core::PlanesView<float> radiance, PassTimes& times);
 
 /// Albedo that radiance of a surface is divided by; 1 where there is none.
 void fillAlbedo(core::In<core::Surface> surfaces, core::PlanesView<float> out);
@@ -97,12 +97,12 @@ class ShadeState {
   core::Foveation foveation_;
   core::vec2 gazeNow_{0};
   View view_;
-  core::Image<float> samples_, check_;
+  core::Image<float> samples_;
   core::Image<std::uint8_t> fovea_;
   restir::RestirState restir_;
   std::optional<restir::SecondHistory> second_;
   std::optional<restir::Diagnostics> diagnostics_;
-  core::Planes radiance_, albedo_;
+  core::Planes radiance_, albedo_, check_;
   PassTimes times_;
 };
 

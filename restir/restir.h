@@ -132,11 +132,11 @@ void drawCandidates(const RestirParameters& parameters, const Frame& frame, Rest
 void shareCandidates(const RestirParameters& parameters, const Frame& frame, const RestirState& first,
                      RestirState& state);
 void reuseTemporally(const RestirParameters& parameters, const Frame& frame, RestirState& state);
-/// Luminance of one independent result a block of 2x2 pixels, shaded from the fresh reservoir alone: unbiased, and
+/// One independent result, RGB, a block of 2x2 pixels, shaded from the fresh reservoir alone: unbiased, and
 /// independent of every earlier frame, which reused samples are not. Negative in pixels that have none. To be called
 /// between drawCandidates and reuseTemporally.
 void shadeCheckSamples(const RestirParameters& parameters, const Frame& frame, const RestirState& state,
-                       core::ImageView<float> luminance);
+                       PlanesView<float> radiance);
 /// radiance: reflected light, emission excluded, 0 where there is no surface. A pixel with n = 0 gets the mean of its
 /// similar neighbours within a few pixels that have samples, else 0.
 void reuseSpatiallyAndShade(const RestirParameters& parameters, const Frame& frame, RestirState& state,

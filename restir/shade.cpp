@@ -156,13 +156,13 @@ std::int64_t countBad(const Frame& frame, In<float> shaded) {
 }  // namespace
 
 void shadeCheckSamples(const RestirParameters& p, const Frame& frame, const RestirState& state,
-                       core::ImageView<float> luminance) {
+                       PlanesView<float> radiance) {
   const std::uint32_t phase = core::Rng(frame.seed, core::Pass::other, 0, frame.now.frame).below(4);
   withTargetFeatures(p, frame, [&]<LightFeatures F, bool kVisibility>() {
     core::forEachPixel(
-        luminance.width, luminance.height,
+        radiance.width(), radiance.height(),
         [&](int x, int y) {
-          luminance(x, y) = -1;
+          radiance.store(x, y, vec3(-1));
           const Surface& surface = frame.now.surfaces(x, y);
           if (static_cast<std::uint32_t>((x & 1) + 2 * (y & 1)) != phase || !surface.hit() ||
               !(frame.samples(x, y) > 0))
@@ -171,7 +171,7 @@ void shadeCheckSamples(const RestirParameters& p, const Frame& frame, const Rest
                                             {x, y}, surface, partsOf(frame, x, y).template target<F, kVisibility>()};
           vec3 colour = shadeSample(pixel, state.fresh(x, y));
           if (p.demodulate) colour /= core::demodulationAlbedo(surface);
-          if (core::isFinite(colour)) luminance(x, y) = core::luminance(colour);
+          if (core::isFinite(colour)) radiance.store(x, y, colour);
         },
         frame.tile);
   });

@@ -94,12 +94,12 @@ template <int K>
 void accumulate(const FilterParameters& parameters, const std::array<twohistory::Policy, K>& policies, In<Taps> taps,
                 PlanesView<const float> radiance, FilterState<K>& state);
 
-/// Holds the last blend against this frame's samples, to be called between accumulate and blend. check: luminance of
+/// Holds the last blend against this frame's samples, to be called between accumulate and blend. check: RGB of
 /// samples that depend on no earlier frame, negative where there is none; empty = the radiance itself is independent.
 template <int K>
 void checkBlend(const twohistory::ValidationParameters& parameters, const std::array<twohistory::Policy, K>& policies,
-                In<Taps> taps, PlanesView<const float> radiance, In<float> check, const FilterState<K>& state,
-                twohistory::Validation& validation);
+                In<Taps> taps, PlanesView<const float> radiance, PlanesView<const float> check,
+                const FilterState<K>& state, twohistory::Validation& validation);
 
 /// s2 from innovations or, where they are few, from the neighbourhood; history 0's variance from it. Pixels that have
 /// never seen a sample take their colours from neighbours that have (weight 0: the next sample replaces them).

@@ -24,9 +24,9 @@ double total(const core::Planes& image) {
 }
 
 /// Sum over the block's one sample, times the four pixels that it stands for.
-double totalOfChecks(const core::Image<float>& check) {
+double totalOfChecks(const core::Planes& check) {
   double sum = 0;
-  for (int i = 0; i < kPixels; ++i) sum += check.data()[i] >= 0 ? 4 * double(check.data()[i]) : 0;
+  for (int i = 0; i < kPixels; ++i) sum += std::max(0.0, 4 * double(core::luminance(check.view().at(i))));
   return sum;
 }
 
@@ -34,8 +34,8 @@ Sums render(const tests::World& world, std::uint64_t seed) {
   restir::RestirParameters p;
   p.demodulate = false;
   restir::RestirState state(kWidth, kHeight);
-  core::Image<float> samples(kWidth, kHeight, 2.0f), check(kWidth, kHeight);
-  core::Planes radiance(kWidth, kHeight);
+  core::Image<float> samples(kWidth, kHeight, 2.0f);
+  core::Planes radiance(kWidth, kHeight), check(kWidth, kHeight);
   Sums sums;
   for (int f = 0; f < world.frames(); ++f) {
     const restir::Frame frame = world.frame(f, samples, seed);
@@ -94,7 +94,8 @@ TEST(CheckSamples, DependOnNoEarlierFrameAsReusedSamplesDo) {
 
 TEST(CheckSamples, AreOneInABlockOfFourAndNoneWithoutSamples) {
   restir::RestirState state(kWidth, kHeight);
-  core::Image<float> samples(kWidth, kHeight, 1.0f), check(kWidth, kHeight);
+  core::Image<float> samples(kWidth, kHeight, 1.0f);
+  core::Planes check(kWidth, kHeight);
   for (int x = 0; x < kWidth / 2; ++x)
     for (int y = 0; y < kHeight; ++y) samples(x, y) = 0;
   const restir::Frame frame = world().frame(0, samples, 1);
@@ -104,7 +105,7 @@ TEST(CheckSamples, AreOneInABlockOfFourAndNoneWithoutSamples) {
   for (int y = 0; y < kHeight; y += 2)
     for (int x = 0; x < kWidth; x += 2) {
       int inBlock = 0;
-      for (int i = 0; i < 4; ++i) inBlock += check(x + i % 2, y + i / 2) >= 0;
+      for (int i = 0; i < 4; ++i) inBlock += check.view().load(x + i % 2, y + i / 2).r >= 0;
       EXPECT_LE(inBlock, x < kWidth / 2 ? 0 : 1);
       all += inBlock;
     }

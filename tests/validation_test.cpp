@@ -12,6 +12,9 @@ using twohistory::Innovation;
 using twohistory::Shifts;
 using twohistory::ValidationParameters;
 
+/// The same in all channels.
+twohistory::ColourShifts grey(const Shifts& s) { return {core::vec3(s[0]), core::vec3(s[1]), core::vec3(s[2])}; }
+
 /// Evidence of `count` samples whose innovation is truth . shift + noise.
 Evidence simulate(const Shifts& truth, float noise, int count, float scale = 1) {
   Evidence e;
@@ -20,7 +23,7 @@ Evidence simulate(const Shifts& truth, float noise, int count, float scale = 1) 
     const Shifts shift{rng.uniform() - 0.3f, rng.uniform() - 0.6f, 0.5f * rng.uniform()};
     float r = noise * (rng.uniform() - 0.5f);
     for (int j = 0; j < twohistory::kShifts; ++j) r += truth[j] * shift[j];
-    e.add({scale * r, 1}, {scale * shift[0], scale * shift[1], scale * shift[2]});
+    e.add({core::vec3(scale * r), 1}, grey({scale * shift[0], scale * shift[1], scale * shift[2]}));
   }
   return e;
 }
@@ -30,6 +33,24 @@ TEST(Evidence, FindsTheShareOfEachShiftThatIsTrue) {
     const Shifts found = simulate(truth, 1, 200'000).solve({});
     for (int j = 0; j < twohistory::kShifts; ++j) EXPECT_NEAR(found[j], truth[j], 0.02) << j;
   }
+}
+
+// Red became brighter and blue darker by as much as blue weighs less in luminance, and more.
+TEST(Evidence, JudgesHueAndNotLuminanceAlone) {
+  const core::vec3 change{1, 0, -2};
+  const float seen = core::luminance(change);
+  ASSERT_GT(seen, 0.05f);
+  Evidence ofColour, ofLuminance;
+  for (std::uint32_t i = 0; i < 100'000; ++i) {
+    core::Rng rng(9, core::Pass::lab, i, 0);
+    const auto noise = [&] { return 0.5f * (rng.uniform() - 0.5f); };
+    const twohistory::ColourShifts correction = grey({0, 0, seen});
+    const core::vec3 r = change + core::vec3(noise(), noise(), noise());
+    ofColour.add({r, 1}, correction);
+    ofLuminance.add({core::vec3(core::luminance(r)), 1}, correction);
+  }
+  EXPECT_EQ(ofColour.solve({})[twohistory::kCorrection], 0);
+  EXPECT_GT(ofLuminance.solve({})[twohistory::kCorrection], 0.9f);  // control
 }
 
 TEST(Evidence, StaysInTheUnitCube) { EXPECT_EQ(simulate({-1, 2, 3}, 0.5f, 10'000).solve({}), (Shifts{0, 1, 1})); }
@@ -76,7 +97,7 @@ TEST(Evidence, SolvesOverTheCubeAndNotByClamping) {
         s[j] = common * shared + (1 - common) * (rng.uniform() - 0.5f), r += truth[j] * s[j];
         d[j] = static_cast<double>(s[j]);
       }
-      e.add({r, 1}, s);
+      e.add({core::vec3(r), 1}, grey(s));
     }
     const Shifts found = e.solve(free);
     const double best = leastOnGrid(e), got = squaredError(e, {found[0], found[1], found[2]});
@@ -125,7 +146,7 @@ TEST(Evidence, DoesNotDependOnExposure) {
 
 TEST(Evidence, OfSurelyRightShiftsOrNoneLeavesThemAlone) {
   Evidence still;  // the blend was history 0, so there is nothing to judge
-  for (int i = 0; i < 100; ++i) still.add({1, 1}, {0, 0, 0});
+  for (int i = 0; i < 100; ++i) still.add({core::vec3(1), 1}, {});
   EXPECT_EQ(still.solve({}), (Shifts{1, 1, 0}));
 }
 
@@ -174,9 +195,9 @@ twohistory::Validation checked(int width, int height, const ValidationParameters
     }
   const auto innovation = [&](int x, int y) {
     core::Rng rng(5, core::Pass::lab, static_cast<std::uint32_t>(y * width + x), 0);
-    return Innovation{truth(x, y) + rng.uniform() - 0.5f, 1};
+    return Innovation{core::vec3(truth(x, y) + rng.uniform() - 0.5f), 1};
   };
-  v.update(p, taps, innovation, [](std::ptrdiff_t, int history) { return history == 0 ? 1.0f : 0.0f; });
+  v.update(p, taps, innovation, [](std::ptrdiff_t, int history) { return core::vec3(history == 0 ? 1.0f : 0.0f); });
   return v;
 }
 

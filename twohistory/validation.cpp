@@ -20,15 +20,16 @@ UsualCount::UsualCount(std::span<const Policy> policies) {
                                 (1 - policies[static_cast<std::size_t>(frames_)].amount));
 }
 
-void Evidence::add(const Innovation& r, const Shifts& shift) {
-  const double w = static_cast<double>(r.weight), v = static_cast<double>(r.value);
+void Evidence::add(const Innovation& r, const ColourShifts& shift) {
+  const core::dvec3 v(r.value);
+  const double w = static_cast<double>(r.weight) / 3;  // dot products as means over channels
   int next = kShifts;
   for (int j = 0; j < kShifts; ++j) {
-    const double d = w * static_cast<double>(shift[j]);
-    sum[j] += d * v;
-    for (int k = 0; k <= j; ++k) sum[next++] += d * static_cast<double>(shift[k]);
+    const core::dvec3 d = w * core::dvec3(shift[j]);
+    sum[j] += dot(d, v);
+    for (int k = 0; k <= j; ++k) sum[next++] += dot(d, core::dvec3(shift[k]));
   }
-  sum[next++] += w * v * v, ++sum[next];
+  sum[next++] += w * dot(v, v), ++sum[next];
 }
 
 void Evidence::accumulate(const Stored& other, double factor) {

@@ -1,16 +1,17 @@
 // Checks a blend against samples that it has not seen, and takes back what it does not keep.
 //
-// Last frame's blend moved away from history 0 by the sum of shifts delta_j: lambda_j lum(X_j - X_0) for each further
-// history, and a correction q lum(X_0) of the lag that is left. Let x be a sample of this frame that is independent of
-// all histories, and r = x - lum(gathered X_0). The expected squared error of X_0 + sum theta_j delta_j, but for x's
-// own variance, is then the mean of (r - sum theta_j delta_j)^2: its minimum with all theta in [0, 1] needs no truth,
+// Last frame's blend moved away from history 0 by the sum of shifts delta_j: lambda_j (X_j - X_0) for each further
+// history, and a correction q X_0 of the lag that is left, all RGB. Let x be a sample of this frame that is independent
+// of all histories, and r = x - gathered X_0. The expected squared error of X_0 + sum theta_j delta_j, but for x's own
+// variance, is then the mean of |r - sum theta_j delta_j|^2: its minimum with all theta in [0, 1] needs no truth,
 // and no model of noise or drift. With w = n / (1 + n V_0) the precision of r in units of 1 / s2,
 //
-//   [check theta]  (Q + R) theta = P + R theta_0,   Q_jk = sum w delta_j delta_k,   P_j = sum w delta_j r
+//   [check theta]  (Q + R) theta = P + R theta_0,   Q_jk = sum w delta_j . delta_k,   P_j = sum w delta_j . r
 //
-// over a tile, its neighbours and recent frames. R_jj = (mean of w r^2) / tau_j^2 says how firmly theta_0 is believed
-// before there was a check: 1 for histories, 0 for the correction, which amplifies noise where it is wrong. Sums are
-// kept apart by count regime: where the fovea arrives, where it left, and elsewhere.
+// (dot products as means over channels, so that a change of hue counts) over a tile, its neighbours and recent frames.
+// R_jj = (mean of w |r|^2) / tau_j^2 says how firmly theta_0 is believed before there was a check: 1 for histories, 0
+// for the correction, which amplifies noise where it is wrong. Sums are kept apart by count regime: where the fovea
+// arrives, where it left, and elsewhere.
 //
 //   [check proven]  theta_0 of a regime's correction = theta_q^4 of all regimes together
 //
@@ -73,15 +74,17 @@ class UsualCount {
   float scale_ = 1;  ///< of steady weights 1 / (1 - decay), where the two decay differently
 };
 
-/// What one pixel's independent sample says. weight 0 = nothing.
+/// What one pixel's independent sample says, RGB. weight 0 = nothing.
 struct Innovation {
-  float value = 0, weight = 0;
+  core::vec3 value{0};
+  float weight = 0;
 };
 
 inline constexpr int kShifts = 3;                ///< those of histories 1 and 2, then the correction
 inline constexpr int kCorrection = kShifts - 1;  ///< index of the latter
 inline constexpr int kCompared = kCorrection;    ///< histories beyond the first, at most
 using Shifts = std::array<float, kShifts>;
+using ColourShifts = std::array<core::vec3, kShifts>;
 
 /// Sums of one tile and regime.
 struct Evidence {
@@ -89,9 +92,9 @@ struct Evidence {
   static constexpr int kSums = kShifts + kSquares + 2;
   using Stored = std::array<float, kSums>;
 
-  std::array<double, kSums> sum{};  ///< P_j; Q_jk for k <= j, row by row; of w r^2; of how many
+  std::array<double, kSums> sum{};  ///< P_j; Q_jk for k <= j, row by row; of w |r|^2; of how many
 
-  void add(const Innovation& r, const Shifts& shift);
+  void add(const Innovation& r, const ColourShifts& shift);
   void accumulate(const Stored& other, double factor);
   Stored stored() const;
   /// [check theta] of all regimes, whose correction must be proven.
@@ -146,7 +149,7 @@ class Validation {
   /// Makes room; forgets everything if the size is new.
   void fit(int width, int height, const UsualCount& usual);
   /// Reads this frame's independent samples against the last blend's shifts. innovation(x, y).
-  /// difference(i, j): lum(X_j - X_0), or lum(X_0) for j = 0, at index i of the frame before, as the last blend saw it.
+  /// difference(i, j): X_j - X_0, or X_0 for j = 0, at index i of the frame before, as the last blend saw it.
   template <class InnovationAt, class DifferenceAt>
   void update(const ValidationParameters& p, core::In<Taps> taps, const InnovationAt& innovation,
               const DifferenceAt& difference);
@@ -162,7 +165,7 @@ class Validation {
  private:
   using TileEvidence = std::array<Evidence::Stored, kRegimes>;
   template <class DifferenceAt>
-  Shifts gathered(const Taps& t, const DifferenceAt& difference) const;
+  ColourShifts gathered(const Taps& t, const DifferenceAt& difference) const;
   void solve(const ValidationParameters& p);
 
   UsualCount usual_;
@@ -172,8 +175,8 @@ class Validation {
 };
 
 template <class DifferenceAt>
-Shifts Validation::gathered(const Taps& t, const DifferenceAt& difference) const {
-  Shifts delta{};
+ColourShifts Validation::gathered(const Taps& t, const DifferenceAt& difference) const {
+  ColourShifts delta{};
   for (int k = 0; k < 4; ++k) {
     if (!(t.b[k] > 0)) continue;
     const Booked& booked = booked_.data()[t.pixel[k]];

@@ -26,8 +26,8 @@ Synthetic::Synthetic(const Case& c, std::uint64_t seed, int width, int height)
       truth_(width, height),
       albedo_(width, height, 1),
       emission_(width, height, 0),
-      samples_(width, height),
       check_(width, height),
+      samples_(width, height),
       fovea_(width, height),
       taps_(width, height) {
   for (core::GuideImages& g : guides_) {
@@ -62,7 +62,8 @@ void Synthetic::fillCheck() {
   core::forEachPixel(check_.width(), check_.height(), [&](int x, int y) {
     const float n = samples_(x, y);
     const bool checked = n > 0 && static_cast<std::uint32_t>((x & 1) + 2 * (y & 1)) == frame % 4;
-    check_(x, y) = checked ? noise_.independent(x, y, n, frame) * core::luminance(truth_.view().load(x, y)) : -1;
+    const vec3 truth = truth_.view().load(x, y);
+    check_.view().store(x, y, checked ? noise_.independent(x, y, n, frame) * truth : vec3(-1));
   });
 }
 
@@ -83,7 +84,8 @@ Shaded Synthetic::next() {
                      [&](int x, int y) { radiance_.view().store(x, y, noise_.at(x, y) * truth_.view().load(x, y)); });
   const bool reused = noise_.isReused();
   if (reused) fillCheck();
-  return {radiance_, albedo_, emission_, samples_, now, before, reused ? check_.view() : core::In<float>{}, taps_};
+  return {radiance_, albedo_, emission_, samples_, now, before, reused ? check_.view() : core::PlanesView<float>{},
+          taps_};
 }
 
 }  // namespace experiments::lab

@@ -53,8 +53,8 @@ class Synthetic {
   Pattern pattern_;
   NoiseField noise_;
   std::array<core::GuideImages, 2> guides_;
-  core::Planes radiance_, truth_, albedo_, emission_;
-  core::Image<float> samples_, check_;
+  core::Planes radiance_, truth_, albedo_, emission_, check_;
+  core::Image<float> samples_;
   core::Image<std::uint8_t> fovea_;
   core::Image<twohistory::Taps> taps_;
 };
