@@ -30,6 +30,7 @@ std::string metricMeaning(const std::string& name) {
       {"bytes_per_pixel", "memory that a variant keeps or reuses between frames"},
       {"energy_over_raw", "mean luminance over that of the unfiltered frame, both over the whole sequence. 1 is right"},
       {"MSE", "mean of (y - r1)(y - r2). Lower is better"},
+      {"MSE_rgb", "the same over channels, where MSE is of luminance. Lower is better"},
       {"bias", "mean of y - r. 0 is right"},
       {"border_step",
        "squared step of the mean error across the border of the region: what an eye sees of it. Lower is better"},

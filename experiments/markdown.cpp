@@ -72,8 +72,9 @@ class Tables {
       return means_.count({scene, metric, v, region}) > 0;
     });
   }
-  static std::string heading(const std::string& title, const std::string& columns, std::size_t count) {
-    std::string line = fmt::format("**{}**\n\n| variant |{}\n|---|", cellText(title), columns);
+  static std::string heading(const std::string& title, const std::string& columns, std::size_t count,
+                             const char* first = "variant") {
+    std::string line = fmt::format("**{}**\n\n| {} |{}\n|---|", cellText(title), first, columns);
     for (std::size_t i = 0; i < count; ++i) line += "---|";
     return line + '\n';
   }
@@ -106,12 +107,13 @@ class Tables {
   std::string borderTable() const {
     std::string columns;
     for (const std::string& v : variants_) columns += " " + cellText(v) + " |";
-    std::string table = heading(
-        "contrast of the border in %, noise outside over inside; " + fmt::format("{}", fmt::join(bordered(), ", ")),
-        columns, variants_.size());
+    const std::vector<std::string> regions = bordered();
+    std::string table =
+        heading(fmt::format("contrast of the border in %, noise outside over inside; {}", fmt::join(regions, ", ")),
+                columns, variants_.size(), "scene");
     for (const std::string& scene : scenes_) {
       table += "| " + cellText(scene) + " |";
-      for (const std::string& v : variants_) table += borderCell(scene, v);
+      for (const std::string& v : variants_) table += borderCell(scene, v, regions);
       table += '\n';
     }
     return table + '\n';
@@ -123,12 +125,16 @@ class Tables {
         regions.push_back(r);
     return regions;
   }
-  std::string borderCell(const std::string& scene, const std::string& variant) const {
+  std::string borderCell(const std::string& scene, const std::string& variant,
+                         const std::vector<std::string>& regions) const {
     const auto percent = [](double squared) { return 100 * std::sqrt(std::max(0.0, squared)); };
     std::vector<std::string> parts;
-    for (const std::string& r : regions_) {
+    for (const std::string& r : regions) {
       const auto found = means_.find({scene, kContrast, variant, r});
-      if (found == means_.end() || !std::isfinite(found->second.mean)) continue;
+      if (found == means_.end() || !std::isfinite(found->second.mean)) {
+        parts.emplace_back("\u2013");
+        continue;
+      }
       const core::Interval& c = found->second;
       std::string part = fmt::format("{:.1f}", percent(c.mean));
       if (std::isfinite(c.low)) part += fmt::format(" [{:.1f}, {:.1f}]", percent(c.low), percent(c.high));
@@ -137,7 +143,7 @@ class Tables {
         part += fmt::format(", x{:.2f}", noise->second.mean);
       parts.push_back(part);
     }
-    return parts.empty() ? " \u2013 |" : fmt::format(" {} |", fmt::join(parts, " \\| "));
+    return fmt::format(" {} |", fmt::join(parts, " \\| "));
   }
   /// Geometric means over scenes, and the worst.
   std::string overScenes(const std::string& metric) const {

@@ -16,7 +16,9 @@ struct MarkdownSelection {
 
 /// One table a scene and metric: a line a variant, and for every region the mean over seeds and the paired ratio to the
 /// baseline with its 95 % interval. Several scenes with one metric are followed by the geometric mean of their ratios
-/// and the worst of them. Throws core::UsageError where the results lack what was asked for.
+/// and the worst of them. "border_contrast2" is one table of all scenes instead, a line a scene: the contrast in % with
+/// its interval and, where there is "border_noise", the ratio of noise. Throws core::UsageError where the results lack
+/// what was asked for.
 std::string markdownTables(const Results& results, const MarkdownSelection& selection);
 
 }  // namespace experiments

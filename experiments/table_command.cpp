@@ -29,7 +29,8 @@ void addTableCommand(CLI::App& app) {
   list("--metrics", a->selection.metrics, "only these");
   list("--regions", a->selection.regions, "only these");
   list("--variants", a->selection.variants, "only these, in this order");
-  command->add_option("--over", a->selection.baseline, "the variant that ratios are against; default: the run's");
+  command->add_option("--over", a->selection.baseline,
+                      "the variant that ratios are against; default: the run's. Contrasts of borders are no ratios");
   command->callback([=] { fmt::print("{}", markdownTables(loadResults(a->file), a->selection)); });
 }
 

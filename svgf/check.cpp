@@ -17,13 +17,15 @@ struct Innovations {
   /// A value of weight w joined a history of weight W - w: before = now + (now - x) w / (W - w).
   Innovation operator()(int x, int y) const {
     const float n = state.samples(x, y);
+    const core::vec3 sample = (check.empty() ? radiance : check).load(x, y);
+    if (!(n > 0) || !(sample.r >= 0)) return {};
     const Ledger<K> ledger = state.ledgerAt(x, y);
     const float fresh = twohistory::freshWeight(policy, n), kept = ledger.weight[0] - fresh;
-    const core::vec3 fell = radiance.load(x, y), sample = check.empty() ? fell : check.load(x, y);
     // A history that is nearly all fresh says nothing of what was before it.
-    if (!(n > 0) || !(sample.r >= 0) || !(kept > 0.05f * ledger.weight[0])) return {};
+    if (!(kept > 0.05f * ledger.weight[0])) return {};
+    const core::vec3 shaded = radiance.load(x, y);
     const core::vec3 now = state.accumulated.base.view().load(x, y);
-    const core::vec3 before = now + (now - fell) * (fresh / kept);
+    const core::vec3 before = now + (now - shaded) * (fresh / kept);
     return {sample - before, n / (1 + n * ledger.covariance(0, 0))};
   }
 };

@@ -15,6 +15,7 @@ constexpr int kFrames = 4, kSequences = 4096, kBlocks = 64;
 /// Frame sums of the last two frames of one sequence.
 struct Sums {
   double before = 0, reused = 0, check = 0;
+  core::dvec3 checkColour{0}, reusedColour{0};
 };
 
 double total(const core::Planes& image) {
@@ -46,6 +47,10 @@ Sums render(const tests::World& world, std::uint64_t seed) {
     restir::reuseSpatiallyAndShade(p, frame, state, radiance);
   }
   sums.reused = total(radiance), sums.check = totalOfChecks(check);
+  for (int i = 0; i < kPixels; ++i) {
+    sums.checkColour += 4.0 * glm::max(core::dvec3(check.view().at(i)), core::dvec3(0));
+    sums.reusedColour += core::dvec3(radiance.view().at(i));
+  }
   return sums;
 }
 
@@ -85,6 +90,20 @@ TEST(CheckSamples, AreUnbiased) {
   };
   EXPECT_LT(std::abs(z(check)), kLargestZ) << check.mean() << " against " << reference.total.mean();
   EXPECT_GT(std::abs(z(half)), kLargestZ);  // control: 5 % of the light lost
+}
+
+// Reuse is unbiased, so its colour is what colour there is.
+TEST(CheckSamples, HaveTheColourOfTheLight) {
+  for (int c = 0; c < 3; ++c) {
+    core::RunningMoments difference, greyDifference;
+    for (const Sums& s : sequences()) {
+      difference.add(s.checkColour[c] - s.reusedColour[c]);
+      greyDifference.add(s.check - s.reusedColour[c]);
+    }
+    const auto z = [](const core::RunningMoments& m) { return std::abs(m.mean()) / std::sqrt(m.meanVariance()); };
+    EXPECT_LT(z(difference), kLargestZ) << c;
+    EXPECT_GT(z(greyDifference), kLargestZ) << c;  // control: luminance in all channels
+  }
 }
 
 TEST(CheckSamples, DependOnNoEarlierFrameAsReusedSamplesDo) {

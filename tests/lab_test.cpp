@@ -90,6 +90,17 @@ TEST(LabSignal, StepsPulsesAndStripesAreWhereTheySay) {
   EXPECT_NE(surfaceAt(s, vec2(-1, 0)), surfaceAt(s, vec2(1, 0)));
 }
 
+TEST(LabMeasure, ErrorOfColourIsTheMeanOverChannels) {
+  core::Planes image(kSize, kSize), truth(kSize, kSize, 1);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) image.view().store(x, y, core::vec3(2, 1, 3));
+  Measure m;
+  m.add(image, truth, experiments::FovealMemory(kSize, kSize));
+  EXPECT_NEAR(m.squaredColourError(experiments::Region::full), 5.0 / 3, 1e-6);
+  const double luminance = 0.2126 + 2 * 0.0722;
+  EXPECT_NEAR(m.squaredError(experiments::Region::full), luminance * luminance, 1e-6);
+}
+
 TEST(LabMeasure, BorderStepSeesALevelAndNotNoise) {
   core::Image<float> level(kSize, kSize), noise(kSize, kSize);
   core::Image<std::uint8_t> inside(kSize, kSize);

@@ -50,7 +50,7 @@ TEST(Markdown, SelectsAndComparesWithWhatIsAskedFor) {
             "| a | 1.05 | 0.500 [0.500, 0.500] |\n\n");
 }
 
-// Contrasts are roots: 0.0004 +- 0.0001 * 12.706 / sqrt(2) of two seeds, negative ones 0.
+// Contrasts are roots: of 4e-4 +- 12.7 * 1e-5 (Student's t of two seeds), and of 1e-4; negative ones are 0.
 TEST(Markdown, ShowsBordersAsContrastsRegionByRegion) {
   Results r;
   r.baseline = "a";
@@ -61,15 +61,16 @@ TEST(Markdown, ShowsBordersAsContrastsRegionByRegion) {
       r.rows.push_back({"pulse", variant, seed, "fovea", "border_contrast2", scale * (4e-4 + 1e-5 * sign)});
       r.rows.push_back({"pulse", variant, seed, "fovea", "border_noise", 1.5});
       r.rows.push_back({"pulse", variant, seed, "recently_foveal", "border_contrast2", scale * 1e-4});
-      r.rows.push_back({"pulse", variant, seed, "full", "MSE", 1});
+      r.rows.push_back({"still", variant, seed, "recently_foveal", "border_contrast2", 4e-4});
     }
   }
   MarkdownSelection s;
   s.metrics = {"border_contrast2"};
   EXPECT_EQ(markdownTables(r, s),
             "**contrast of the border in %, noise outside over inside; fovea, recently_foveal**\n\n"
-            "| variant | a | b |\n|---|---|---|\n"
-            "| pulse | 2.0 [1.7, 2.3], x1.50 \\| 1.0 [1.0, 1.0] | 0.0 [0.0, 0.0], x1.50 \\| 0.0 [0.0, 0.0] |\n\n");
+            "| scene | a | b |\n|---|---|---|\n"
+            "| pulse | 2.0 [1.7, 2.3], x1.50 \\| 1.0 [1.0, 1.0] | 0.0 [0.0, 0.0], x1.50 \\| 0.0 [0.0, 0.0] |\n"
+            "| still | \u2013 \\| 2.0 [2.0, 2.0] | \u2013 \\| 2.0 [2.0, 2.0] |\n\n");
 }
 
 TEST(Markdown, RefusesNamesThatAreNotThere) {

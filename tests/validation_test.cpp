@@ -35,7 +35,7 @@ TEST(Evidence, FindsTheShareOfEachShiftThatIsTrue) {
   }
 }
 
-// Red became brighter and blue darker by as much as blue weighs less in luminance, and more.
+// Red rises by 1 and blue falls by 2: luminance rises, the sum over channels falls.
 TEST(Evidence, JudgesHueAndNotLuminanceAlone) {
   const core::vec3 change{1, 0, -2};
   const float seen = core::luminance(change);
@@ -225,17 +225,22 @@ TEST(Validation, TheWholeFrameCountsForOneTileAtAnyResolution) {
   }
 }
 
+const std::vector<std::string> kSmall{"width=96", "height=64", "frames=80"}, kAsTheLaboratoryIs;
+
 /// Error of a variant over unweighted's, geometric mean over three seeds, in one of the laboratory's cases.
-double labRatio(const std::string& name, const experiments::Json& variant, const std::string& region) {
+double labRatio(const std::string& name, const experiments::Json& variant, const std::string& region,
+                const std::vector<std::string>& size = kSmall, const std::string& metric = "MSE",
+                const std::vector<experiments::lab::Case>& cases = {}) {
   namespace lab = experiments::lab;
-  lab::LabConfig config = lab::labConfigFrom(experiments::Json::object(), {"width=96", "height=64", "frames=80"}, name);
+  lab::LabConfig config = lab::labConfigFrom(experiments::Json::object(), size, "");
+  if (!cases.empty()) config.cases = cases;
   std::erase_if(config.cases, [&](const lab::Case& c) { return c.name != name; });
   config.variants = {"unweighted", variant};
   config.seeds = {11, 12, 13};
   const experiments::Results results = lab::runLab(config);
   double sum = 0;
   for (const experiments::Row& r : results.rows)
-    if (r.metric == "MSE" && r.region == region) sum += (r.variant == "unweighted" ? -1 : 1) * std::log(r.value);
+    if (r.metric == metric && r.region == region) sum += (r.variant == "unweighted" ? -1 : 1) * std::log(r.value);
   return std::exp(sum / 3);
 }
 
@@ -259,6 +264,26 @@ TEST(Correction, HalvesTheErrorOfMovingLightAndNeedsItsCheck) {
   EXPECT_LT(labRatio("spot-moving", "lag-debiased", "full"), 0.5 * labRatio("spot-moving", uncorrected, "full"));
   EXPECT_LT(labRatio("shared-constant-moving", "lag-debiased", "full"), 1.02);
   EXPECT_GT(labRatio("shared-constant-moving", kUncheckedDebiased, "full"), 1.2);  // control
+}
+
+// Of histories that all weigh frames pixels are of one regime. Were it as free as one of three, the correction would be
+// believed where the fovea just was, too, where it only adds noise.
+TEST(Correction, HasToAgreeWithWhatAllHaveProven) {
+  const experiments::Json free = {
+      {"like", "lag-even"}, {"name", "free"}, {"blend", {{"validation", {{"agreement", 0.25}}}}}};
+  EXPECT_LT(labRatio("filter-constant-moving", "lag-even", "recently_foveal", kAsTheLaboratoryIs), 1.02);
+  EXPECT_GT(labRatio("filter-constant-moving", free, "recently_foveal", kAsTheLaboratoryIs), 1.02);  // control
+}
+
+// Lag is estimated from luminance; what follows of it for colours is checked in RGB.
+TEST(Correction, MakesNoColourWorse) {
+  experiments::lab::Case c;
+  c.name = "coloured";
+  c.signal.kind = experiments::lab::SignalKind::pulse, c.signal.apart = 0.5f;
+  c.motion.x = 0.37f, c.motion.y = 0.21f;
+  for (const char* variant : {"lag-debiased", "lag-even"})
+    EXPECT_LT(labRatio("coloured", variant, "full", kSmall, "MSE_rgb", {c}), 1.02) << variant;
+  EXPECT_GT(labRatio("coloured", kUncheckedDebiased, "full", kSmall, "MSE_rgb", {c}), 1.2);  // control
 }
 
 // Where no samples arrive a lag goes stale. The check cannot know: nothing arrives there. Believed for ever, the lag

@@ -89,7 +89,7 @@ Vector leastInCube(const System& m, const Vector& right) {
 
 }  // namespace
 
-Shifts Evidence::solve(const ValidationParameters& p, const Prior& correction) const {
+Shifts Evidence::solveWith(const ValidationParameters& p, const Prior& correction) const {
   Shifts result{1, 1, correction.mean};
   const double residual = sum[kSums - 2], count = sum[kSums - 1];
   if (!(count > 0) || !(residual > 0)) return result;

@@ -13,10 +13,11 @@
 // for the correction, which amplifies noise where it is wrong. Sums are kept apart by count regime: where the fovea
 // arrives, where it left, and elsewhere.
 //
-//   [check proven]  theta_0 of a regime's correction = theta_q^4 of all regimes together
+//   [check proven]  theta_0 of a regime's correction = theta_q^4 of all regimes together, tau = agreement
 //
 // so that a correction that is certain elsewhere makes no step where evidence of a regime is scarce. Histories of which
-// none weighs samples do not know what count is usual; all their pixels are of one regime.
+// none weighs samples do not know what count is usual; all their pixels are of one regime, whose evidence then
+// counts twice.
 #pragma once
 
 #include <array>
@@ -43,7 +44,8 @@ void describe(V& v, ValidationParameters& p) {
   v("on", p.on, "draw the blend back to history 0 where samples that it has not seen contradict it");
   v("decay", p.decay, "of the evidence, a frame", 0.0, 1.0);
   v("trust", p.trust, "standard deviation of the factor around 1 before any evidence", 1e-3, 1e3);
-  v("proof", p.proof, "standard deviation of the correction's factor around 0 before any evidence", 1e-3, 1e3);
+  v("proof", p.proof, "standard deviation of the correction's factor of all regimes around 0 before any evidence", 1e-3,
+    1e3);
   v("agreement", p.agreement, "standard deviation of a regime's factor of the correction around what all have proven",
     1e-3, 1e3);
   v("shared", p.shared, "tiles that the whole frame's evidence counts for beside a tile and its neighbours", 0.0, 1e6);
@@ -98,16 +100,16 @@ struct Evidence {
   void accumulate(const Stored& other, double factor);
   Stored stored() const;
   /// [check theta] of all regimes, whose correction must be proven.
-  Shifts solve(const ValidationParameters& p) const { return solve(p, {0, p.proof}); }
+  Shifts solve(const ValidationParameters& p) const { return solveWith(p, {0, p.proof}); }
   /// The same of one regime. proven: theta_0 of its correction ([check proven]).
-  Shifts solve(const ValidationParameters& p, float proven) const { return solve(p, {proven, p.agreement}); }
+  Shifts solve(const ValidationParameters& p, float proven) const { return solveWith(p, {proven, p.agreement}); }
 
  private:
   /// theta_0 and tau_c of the correction.
   struct Prior {
     float mean, deviation;
   };
-  Shifts solve(const ValidationParameters& p, const Prior& correction) const;
+  Shifts solveWith(const ValidationParameters& p, const Prior& correction) const;
 };
 
 /// What a blend shifted a pixel by, and in which regime: lambda_j within [-4, 4] and the correction q, in units of X_0,

@@ -2,6 +2,7 @@
 
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <set>
 
 #include "core/check.h"
@@ -63,12 +64,13 @@ class Job {
   std::vector<std::unique_ptr<FilterState>> states_;
 };
 
-void addRows(const Case& c, const std::string& variant, std::uint64_t seed, const Measure& m, std::vector<Row>& rows) {
+void addRows(const Case& c, bool colours, const std::string& variant, std::uint64_t seed, const Measure& m,
+             std::vector<Row>& rows) {
   const auto add = [&](Region region, const char* metric, double value) {
     rows.push_back({c.name, variant, seed, std::string(regionName(region)), metric, value});
   };
   for (const Region region : kRegions) add(region, "MSE", m.squaredError(region));
-  if (c.signal.apart != 0)
+  if (colours)
     for (const Region region : kRegions) add(region, "MSE_rgb", m.squaredColourError(region));
   for (const Region region : kBorders) add(region, "border_step", m.border(region).meanSquare());
   for (const Region region : kBorders) add(region, "border_noise", m.border(region).noiseRatio());
@@ -123,10 +125,13 @@ Results runLab(const LabConfig& config) {
     tbb::this_task_arena::isolate([&] { measures[i] = Job(config, c, config.seeds[i % seeds], variants).run(); });
     progress.advance(1, c.name);
   });
+  const bool colours =
+      std::any_of(config.cases.begin(), config.cases.end(), [](const Case& c) { return isColoured(c.signal); });
   Results results;
   for (std::size_t i = 0; i < jobs; ++i)
     for (std::size_t v = 0; v < variants.size(); ++v)
-      addRows(config.cases[i / seeds], variants[v].name, config.seeds[i % seeds], measures[i][v], results.rows);
+      addRows(config.cases[i / seeds], colours, variants[v].name, config.seeds[i % seeds], measures[i][v],
+              results.rows);
   for (std::size_t c = 0; c < config.cases.size(); ++c) {  // what only several seeds together can tell
     std::vector<BorderContrasts> contrasts;
     for (std::size_t s = 0; s < seeds; ++s)

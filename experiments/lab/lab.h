@@ -43,7 +43,8 @@ void describe(V& v, LabConfig& p) {
 /// `only`. Throws core::UsageError.
 LabConfig labConfigFrom(Json json, const std::vector<std::string>& assignments, const std::string& only);
 
-/// Runs every case, seed and variant: a row each of "MSE" in every region, and at the fovea's border and that of where
+/// Runs every case, seed and variant: a row each of "MSE" in every region, of "MSE_rgb" too
+/// where the channels of any case differ, and at the fovea's border and that of where
 /// it has been (border.h): of "border_step", mean squared step; "border_noise", noise outside over noise inside;
 /// "border_contrast2", squared Weber contrast of the step in the mean image, from three seeds on. Cases are the
 /// results' scenes.

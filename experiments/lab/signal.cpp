@@ -50,7 +50,7 @@ float signalAt(const SignalParameters& p, vec2 point, int frame) {
 }
 
 core::vec3 colourAt(const SignalParameters& p, vec2 point, int frame) {
-  if (p.kind != SignalKind::pulse) return core::vec3(signalAt(p, point, frame));
+  if (!isColoured(p)) return core::vec3(signalAt(p, point, frame));
   const float t = static_cast<float>(frame), later = p.apart * p.period;
   return {pulse(p, t), pulse(p, t - later), pulse(p, t - 2 * later)};
 }

@@ -58,6 +58,9 @@ float signalAt(const SignalParameters& parameters, core::vec2 point, int frame);
 /// The same in RGB.
 core::vec3 colourAt(const SignalParameters& parameters, core::vec2 point, int frame);
 
+/// Whether channels differ.
+inline bool isColoured(const SignalParameters& p) { return p.kind == SignalKind::pulse && p.apart != 0; }
+
 /// Which surface lies there: 0, or 0 and 1 in turn where the parts are separate.
 std::uint32_t surfaceAt(const SignalParameters& parameters, core::vec2 point);
 

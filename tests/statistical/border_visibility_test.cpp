@@ -1,9 +1,7 @@
-// No border shows where the fovea is or was, for histories of which none weighs samples: under a fast pulse of the
-// light, the step of the mean image stays below the 1 % of Weber contrast from which it counts as visible
+// No step of the mean shows where the fovea is or was, for histories of which none weighs samples: under a fast pulse
+// of the light, the step of the mean image stays below the 1 % of Weber contrast from which it counts as visible
 // (experiments/border.h). The controls are blends that step, and must be seen to.
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "core/statistics.h"
 #include "experiments/lab/lab.h"
