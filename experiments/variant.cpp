@@ -41,7 +41,7 @@ std::vector<Variant>& extensions() {
 
 /// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one. A blend whose lag is taken
 /// away can afford a longer W and profits from a faster F; if no history weighs samples, none lags less where there are
-/// more of them, so that no border of counts shows.
+/// more of them, so that no step of the mean shows where counts change.
 std::vector<Variant> ownLibrary() {
   const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
   Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
