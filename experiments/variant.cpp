@@ -39,11 +39,10 @@ std::vector<Variant>& extensions() {
   return all;
 }
 
-/// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one. A blend whose lag is taken
-/// away can afford a longer W and profits from a faster F; if no history weighs samples, none lags less where there are
-/// more of them, so that no step of the mean shows where counts change.
-std::vector<Variant> ownLibrary() {
-  const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
+/// Lag regression over U, W and F. A blend whose lag is taken away can afford a longer W and profits from a faster F;
+/// if no history weighs samples, none lags less where there are more of them, so that no step of the mean shows where
+/// counts change.
+std::vector<Variant> threeHistories(const Policy& u, const Policy& w, const Policy& f) {
   Variant all = lag("lag-uwf", {u, w, f}, -0.5f, 1.5f, NoiseEstimate::safe);
   all.blend.mode = BlendMode::lagAll;
   all.blend.pair = {0, 2};
@@ -61,26 +60,29 @@ std::vector<Variant> ownLibrary() {
   even.name = "lag-even";
   even.histories = {u, frames(0.98), frames(0.5)};
   even.blend.validation.agreement = 0.1f;
-  return {make("none", {frames(0)}),
-          make("unweighted", {u}),
-          make("unweighted-96", {frames(0.96)}),
-          make("unweighted-98", {frames(0.98)}),
-          make("weighted", {w}),
-          make("published", {u, w}, BlendMode::published),
-          make("optimal", {u, w}, BlendMode::optimal),
-          make("optimal-uwf", {u, w, f}, BlendMode::optimalAll),
-          make("seed", {u, w}, BlendMode::seed),
-          make("seed-slide", {u, w}, BlendMode::seedSlide),
-          make("consistent", {u, w}, BlendMode::consistent),
-          lag("lag-uw", {u, w}, -0.5f, 1.5f, NoiseEstimate::predicted),
-          lag("lag-wf", {w, f}, -0.5f, 1.5f, NoiseEstimate::predicted),
-          lag("lag-safe", {u, f}, -0.5f, 1.0f, NoiseEstimate::safe),
-          all,
-          checked,
-          bold,
-          debiased,
-          even,
-          make("oracle", {u, w}, BlendMode::oracle)};
+  return {all, checked, bold, debiased, even};
+}
+
+/// U (0.95, frames), W (0.95, samples): the slides' pair. F (0.8, samples): the fast one.
+std::vector<Variant> ownLibrary() {
+  const Policy u = frames(0.95), w = samples(0.95), f = samples(0.8);
+  std::vector<Variant> own{make("none", {frames(0)}),
+                           make("unweighted", {u}),
+                           make("unweighted-96", {frames(0.96)}),
+                           make("unweighted-98", {frames(0.98)}),
+                           make("weighted", {w}),
+                           make("published", {u, w}, BlendMode::published),
+                           make("optimal", {u, w}, BlendMode::optimal),
+                           make("optimal-uwf", {u, w, f}, BlendMode::optimalAll),
+                           make("seed", {u, w}, BlendMode::seed),
+                           make("seed-slide", {u, w}, BlendMode::seedSlide),
+                           make("consistent", {u, w}, BlendMode::consistent),
+                           lag("lag-uw", {u, w}, -0.5f, 1.5f, NoiseEstimate::predicted),
+                           lag("lag-wf", {w, f}, -0.5f, 1.5f, NoiseEstimate::predicted),
+                           lag("lag-safe", {u, f}, -0.5f, 1.0f, NoiseEstimate::safe)};
+  for (const Variant& v : threeHistories(u, w, f)) own.push_back(v);
+  own.push_back(make("oracle", {u, w}, BlendMode::oracle));
+  return own;
 }
 
 std::vector<Variant> library() {
