@@ -34,7 +34,7 @@ struct ValidationParameters {
   bool on = false;
   float decay = 0.9f;       ///< of the sums, a frame
   float trust = 1;          ///< tau: standard deviation of theta around 1 before any check
-  float proof = 0.25f;      ///< tau_c: the same of the correction's theta, around 0: it must be proven first
+  float proof = 0.25f;      ///< tau_c of the correction's theta of all regimes, around 0: it must be proven first
   float agreement = 0.25f;  ///< tau_c of a regime's correction, around what all regimes have proven
   float shared = 1;         ///< how many tiles the whole frame's evidence counts for beside a tile and its neighbours
 };
