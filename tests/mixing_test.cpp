@@ -95,7 +95,7 @@ TEST(Walk, StepsOfThePastAreLikelyNearerToTheirMean) {
   float before = 0;
   for (const float f : {0.001f, 0.02f, 0.1f, 0.25f, 0.5f}) {
     const TapPairs p = twohistory::pairsOf(tapsAt(f, 0, 9), 9);
-    const auto steps = twohistory::likelySteps<float>(p);
+    const auto steps = twohistory::LikelySteps<float>{}(tapsAt(f, 0, 9), p);
     EXPECT_EQ(steps.y, 0);
     EXPECT_GT(steps.x, before);
     EXPECT_LE(std::abs(steps.x - 1 / 3.0f), std::abs(p.alongRow() - 1 / 3.0f));

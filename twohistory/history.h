@@ -63,13 +63,13 @@ struct Recall {
   Ledger<K> gathered, now;
   Advance<K> change;
 
-  /// before: anything whose at(index) is or becomes a Ledger<K>; width: of its image.
-  template <class Ledgers>
-  Recall(const Taps& t, const Ledgers& before, int width, const Policies<K>& policies, float n)
+  /// before: anything whose at(index) is or becomes a Ledger<K>; width: of its image; steps: as for mix (ledger.h).
+  template <class Ledgers, class Steps = LikelySteps<float>>
+  Recall(const Taps& t, const Ledgers& before, int width, const Policies<K>& policies, float n, const Steps& steps = {})
       : taps(t), samples(n), tap{read(before, 0), read(before, 1), read(before, 2), read(before, 3)} {
     const auto sums = sumTaps<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
     change = advanceOf(sums.ledger, policies, n);
-    gathered = mix(sums, pairsOf(t, width), change, n);
+    gathered = mix(sums, t, width, steps, change, n);
     now = advance(gathered, change, n);
   }
   /// In place: a ledger that is unpacked field by field and then copied waits for its stores.
@@ -93,15 +93,18 @@ struct Recall {
 /// taps: per pixel, into the previous frame. n: sample counts >= 0, 0 = nothing new. before / now: views of the K
 /// remembered values (anything with at(index), and store(x, y, value)); fresh: anything with load(x, y). Ledgers
 /// likewise: at(index) gives what becomes a Ledger<K>, store(x, y, ledger) takes one. All images have one size and no
-/// padding; before and now must not overlap.
-template <int K, class LedgersBefore, class LedgersNow, class M, class Before, class Fresh, class Now>
+/// padding; before and now must not overlap. steps: what past frames' taps were like: a guess, or StepTiles (steps.h),
+/// which make predicted variances right when motion begins or keeps to a fraction of a pixel.
+template <int K, class LedgersBefore, class LedgersNow, class M, class Before, class Fresh, class Now,
+          class Steps = LikelySteps<float>>
 void accumulateInto(In<Taps> taps, In<float> n, const Policies<K>& policies, const LedgersBefore& ledgersBefore,
                     const LedgersNow& ledgersNow, const M& merge, const std::array<Before, K>& before,
-                    const Fresh& fresh, const std::array<Now, K>& now, int tile = core::kDefaultTile) {
+                    const Fresh& fresh, const std::array<Now, K>& now, int tile = core::kDefaultTile,
+                    const Steps& steps = {}) {
   core::forEachPixel(
       n.width, n.height,
       [&](int x, int y) {
-        const Recall<K> recall(taps(x, y), ledgersBefore, n.width, policies, n(x, y));
+        const Recall<K> recall(taps(x, y), ledgersBefore, n.width, policies, n(x, y), steps);
         ledgersNow.store(x, y, recall.now);
         for (int j = 0; j < K; ++j) {
           const Step step = recall.step(j, {x, y});

@@ -117,10 +117,11 @@ TapSums<K, Real> sumTaps(const Taps& taps, const Before& before) {
   return sum;
 }
 
-/// How alike the taps of each history are (mixing.h). a: what the frame does to it; n: its samples.
+/// How alike the taps of each history are (mixing.h). steps: of the frames before; a: what the frame does to it; n: its
+/// samples.
 template <int K, class Real>
-std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const Advance<K, Real>& a, Real n) {
-  const WalkSteps<Real> steps = likelySteps<Real>(pairs);
+std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const WalkSteps<Real>& steps,
+                               const Advance<K, Real>& a, Real n) {
   std::array<Real, K> r;
   for (int j = 0; j < K; ++j) {
     const int i = pairIndex<K>(j, j);
@@ -135,12 +136,15 @@ std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pai
 /// What the taps know [ledger taps]. Weights and age sums are sums, so they mix with b; power sums mix between b^2
 /// (independent taps) and b (one value), by how alike they are. The harmonic mean of two histories' likenesses keeps
 /// them a covariance matrix: 1 / (x_g + x_h) is positive semidefinite, and so is its product with another, term by
-/// term.
-template <int K, class Real>
-Ledger<K, Real> mix(const TapSums<K, Real>& sums, const TapPairs& pairs, const Advance<K, Real>& a, Real n) {
+/// term. steps(taps, pairs): WalkSteps of the frames before (LikelySteps, or StepTiles of steps.h); width: of the image
+/// that the taps point into.
+template <int K, class Real, class Steps>
+Ledger<K, Real> mix(const TapSums<K, Real>& sums, const Taps& taps, int width, const Steps& steps,
+                    const Advance<K, Real>& a, Real n) {
   Ledger<K, Real> mixed = sums.ledger;
+  const TapPairs pairs = pairsOf(taps, width);
   if (!(pairs.all() > 0)) return mixed;
-  const std::array<Real, K> r = likenesses(sums, pairs, a, n);
+  const std::array<Real, K> r = likenesses<K, Real>(sums, pairs, steps(taps, pairs), a, n);
   for (int i = 0, g = 0; g < K; ++g)
     for (int h = g; h < K; ++h, ++i) {
       const Real both = g == h ? r[g] : 2 * r[g] * r[h] / std::max(r[g] + r[h], Real(1e-20));
@@ -149,12 +153,12 @@ Ledger<K, Real> mix(const TapSums<K, Real>& sums, const TapPairs& pairs, const A
   return mixed;
 }
 
-/// What a frame of n samples finds under its taps. before: without padding.
-template <int K, class Real>
+/// What a frame of n samples finds under its taps. before: without padding; steps: as for mix.
+template <int K, class Real, class Steps = LikelySteps<Real>>
 Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before,
-                       const Policies<K>& policies, Real n) {
+                       const Policies<K>& policies, Real n, const Steps& steps = {}) {
   const auto sums = sumTaps<K, Real>(taps, before);
-  return mix(sums, pairsOf(taps, before.width), advanceOf(sums.ledger, policies, n), n);
+  return mix(sums, taps, before.width, steps, advanceOf(sums.ledger, policies, n), n);
 }
 
 }  // namespace twohistory

@@ -7,9 +7,9 @@
 // a random walk that dies at the rate u = 1 / d^2 - 1. Where it has settled R_n = rho^|n| R_0, and
 //
 //   [ledger walk]   rho + 1 / rho = 2 + 2 u / s
-//   [ledger step]   s -> s + 0.9 s / (s + 0.05) (1/3 - s), what past steps were likely like, if this frame's is s
 //   [ledger plane]  u -> (u + l) / (1 - l), l = s (1 - rho) of the other axis: leaving a row is like dying there
-//   [ledger alike]  r = min(1, rho (1/4 + 3/4 min(3, (1 - F) / O))), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
+//   [ledger alike]  r = min(1, rho min(3, (1 - F) / O)), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
+//   [ledger guess]  s -> s + 0.9 s / (s + 0.05) (1/3 - s), for who has no better knowledge of past steps (steps.h)
 //
 // F is the share of the noise that a frame's fresh samples have, O what a settled walk has older than a frame.
 // Derivation, and how exact this is: docs/history.md.
@@ -64,13 +64,15 @@ struct WalkSteps {
   Real x, y;
 };
 
-/// What past frames' steps were likely like: between this frame's and the mean of a fraction of a pixel that is
-/// anything, 1/3. An axis along which nothing moves stays so.
+/// What past frames' steps were likely like, if this frame's is all that is known: between it and the mean of a
+/// fraction of a pixel that is anything, 1/3. An axis along which nothing moves stays so.
 template <class Real>
-WalkSteps<Real> likelySteps(const TapPairs& p) {
-  const auto likely = [](Real s) { return s + Real(0.9) * s / (s + Real(0.05)) * (Real(1) / 3 - s); };  // [ledger step]
-  return {likely(p.alongRow()), likely(p.alongColumn())};
-}
+struct LikelySteps {
+  WalkSteps<Real> operator()(const Taps&, const TapPairs& p) const {
+    const auto likely = [](Real s) { return s + Real(0.9) * s / (s + Real(0.05)) * (Real(1) / 3 - s); };
+    return {likely(p.alongRow()), likely(p.alongColumn())};  // [ledger guess]
+  }
+};
 
 /// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; steps: of the frames before; death: u > 0;
 /// freshShare: F in [0, 1].
@@ -81,8 +83,8 @@ Real tapLikeness(const TapPairs& p, const WalkSteps<Real>& steps, Real death, Re
   const Real x = walkCorrelation(death + lostY, sx * (1 - lostY));  // [ledger plane], both divided by 1 - l
   const Real y = walkCorrelation(death + lostX, sy * (1 - lostX));
   const Real common = p.row * x + p.column * y + p.diagonal * x * y;
-  const Real older = (1 - freshShare) * (1 + death) / (1 - all + common);                         // (1 - F) / O
-  return std::min(Real(1), common / all * (Real(0.25) + Real(0.75) * std::min(Real(3), older)));  // [ledger alike]
+  const Real older = (1 - freshShare) * (1 + death) / (1 - all + common);  // (1 - F) / O
+  return std::min(Real(1), common / all * std::min(Real(3), older));       // [ledger alike]
 }
 
 /// u of a history that keeps d of its weight a frame and has the age sum A and weight W: mostly its decay's, and its
