@@ -7,7 +7,8 @@
 #include <functional>
 #include <vector>
 
-#include "twohistory/ledger.h"
+#include "twohistory/history.h"
+#include "twohistory/mean.h"
 
 namespace {
 
@@ -138,6 +139,24 @@ double predictedVariance(const std::vector<float>& moved, double decay, bool rem
     std::swap(before, now);
   }
   return static_cast<double>(before(kWidth - 8, kHeight / 2).covariance(0, 0));
+}
+
+TEST(RememberedSteps, ReachLedgersThroughAccumulate) {
+  const twohistory::Policies<1> policies{Policy{Weighting::frames, Forgetting::decay, 0.95}};
+  core::Image<Ledger<1>> before(kWidth, kHeight), now = before;
+  core::Image<float> value(kWidth, kHeight), next = value, count(kWidth, kHeight, 1);
+  StepTiles steps(kWidth, kHeight);
+  const std::vector<float> moved{0, 0, 0, 0.4f, 0.4f, 0.4f};
+  for (const float m : moved) {
+    const core::Image<Taps> taps = tapsOf([&](int, int) { return core::vec2(m, 0); });
+    twohistory::accumulate<1>(taps.view(), count.view(), policies, before.view(), now.view(), twohistory::Mean<float>{},
+                              std::array<core::In<float>, 1>{value}, count.view(),
+                              std::array<core::ImageView<float>, 1>{next}, core::kDefaultTile, steps);
+    steps.update(taps);
+    std::swap(before, now), std::swap(value, next);
+  }
+  EXPECT_EQ(before(kWidth - 8, kHeight / 2).covariance(0, 0), predictedVariance(moved, 0.95, true));
+  EXPECT_NE(before(kWidth - 8, kHeight / 2).covariance(0, 0), predictedVariance(moved, 0.95, false));  // control
 }
 
 /// Frames of rest, of motion by `fraction`, and of rest again; or moving by it in every other frame.

@@ -115,12 +115,12 @@ void accumulateInto(In<Taps> taps, In<float> n, const Policies<K>& policies, con
 }
 
 /// The same with ledgers as they are.
-template <int K, class M, class Before, class Fresh, class Now>
+template <int K, class M, class Before, class Fresh, class Now, class Steps = LikelySteps<float>>
 void accumulate(In<Taps> taps, In<float> n, const Policies<K>& policies, In<Ledger<K>> ledgerBefore,
                 ImageView<Ledger<K>> ledgerNow, const M& merge, const std::array<Before, K>& before, const Fresh& fresh,
-                const std::array<Now, K>& now, int tile = core::kDefaultTile) {
+                const std::array<Now, K>& now, int tile = core::kDefaultTile, const Steps& steps = {}) {
   CHECK_EQ(ledgerBefore.pitch, ledgerBefore.width);
-  accumulateInto<K>(taps, n, policies, ledgerBefore, ledgerNow, merge, before, fresh, now, tile);
+  accumulateInto<K>(taps, n, policies, ledgerBefore, ledgerNow, merge, before, fresh, now, tile, steps);
 }
 
 }  // namespace twohistory
