@@ -13,7 +13,8 @@
 
 namespace twohistory {
 
-/// Past steps of one image. Where nothing is known yet they are 0: taps of a first motion are independent.
+/// Past steps of one image. Where nothing is known yet they are 0: taps of a first motion are independent. Every fourth
+/// pixel of a row and column is looked at: what is thinner and moves over what stands seems to have just begun.
 class StepTiles {
  public:
   static constexpr int kSide = 16;  ///< pixels
