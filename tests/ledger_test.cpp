@@ -206,6 +206,25 @@ TEST(Ledger, TapsMixSumsAndOrderDoesNotMatter) {
   EXPECT_EQ(one.powerSums[0], before(0, 1).powerSums[0]);  // a camera at rest changes no bit
 }
 
+TEST(Ledger, WhatIsNotCarriedAlongIsForgottenAsByDecay) {
+  const twohistory::Policies<2> policies{
+      {{Weighting::frames, Forgetting::decay, 0.9}, {Weighting::samples, Forgetting::none, 0}}};
+  const twohistory::Policies<2> less{
+      {{Weighting::frames, Forgetting::decay, 0.9 * 0.75}, {Weighting::samples, Forgetting::decay, 0.75}}};
+  core::Image<Ledger<2, double>> before(1, 1);
+  for (const double n : {1.0, 4.0, 2.0}) before(0, 0) = advance(before(0, 0), policies, n);
+  twohistory::Taps taps = twohistory::stillTap(0);
+  taps.carried = 0.75f;
+  const auto gathered = twohistory::gather<2, double>(taps, before, policies, 3.0);
+  const auto now = advance(gathered, advanceOf<2, double>(gathered, policies, 3.0, taps.carried), 3.0);
+  const auto expected = advance(before(0, 0), less, 3.0);
+  for (int j = 0; j < 2; ++j) {
+    EXPECT_DOUBLE_EQ(now.weight[j], expected.weight[j]);
+    EXPECT_DOUBLE_EQ(now.ageSum[j], expected.ageSum[j]);
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_DOUBLE_EQ(now.powerSums[i], expected.powerSums[i]);
+}
+
 TEST(Ledger, ResetIsAFreshStart) {
   core::Image<Ledger<2>> before(1, 1);
   before(0, 0) = run<float>({8, 1, 1, 0, 3}, decaying(kFrames, 0.95), decaying(kSamples, 0.8));

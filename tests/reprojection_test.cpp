@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "twohistory/history.h"
+#include "twohistory/mean.h"
+
 namespace {
 
 using core::GuideImages;
@@ -21,9 +26,10 @@ GuideImages plane(int width, int height, float depth = 5) {
   return g;
 }
 
-Image<Taps> tapsOf(const GuideImages& now, const GuideImages& before) {
+Image<Taps> tapsOf(const GuideImages& now, const GuideImages& before,
+                   const twohistory::ReprojectionParameters& parameters = {}) {
   Image<Taps> taps(now.depth.width(), now.depth.height());
-  twohistory::reproject(now.view(), before.view(), {}, taps);
+  twohistory::reproject(now.view(), before.view(), parameters, taps);
   return taps;
 }
 
@@ -52,6 +58,56 @@ TEST(Reprojection, EveryTapHasItsOwnBoundsTest) {
   now.motion.fill(vec2(0.5f, 0.5f));
   const Taps t = tapsOf(now, plane(8, 6))(7, 5);
   EXPECT_EQ(t.b, (std::array<float, 4>{1, 0, 0, 0}));
+}
+
+TEST(Reprojection, OnlyWhatLiesBeyondTheEdgeIsNotCarriedAlong) {
+  GuideImages now = plane(8, 6), before = plane(8, 6);
+  now.motion.fill(vec2(0.5f, 0.25f));
+  before.id(4, 3) = 9;
+  twohistory::ReprojectionParameters p;
+  p.edgeReach = 4;
+  const Image<Taps> taps = tapsOf(now, before, p);
+  EXPECT_FLOAT_EQ(taps(7, 2).carried, 1 - 0.5f / 4);                  // right edge
+  EXPECT_FLOAT_EQ(taps(2, 5).carried, 1 - 0.25f / 4);                 // lower edge
+  EXPECT_FLOAT_EQ(taps(7, 5).carried, 1 - (1 - 0.5f * 0.75f) / 4);    // corner
+  for (int x = 0; x < 7; ++x) EXPECT_EQ(taps(x, 2).carried, 1) << x;  // another surface is not an edge
+  p.edgeReach = 1;
+  EXPECT_FLOAT_EQ(tapsOf(now, before, p)(7, 5).carried, 0.5f * 0.75f);  // what was inside
+  now.motion.fill(vec2(1, 0));
+  EXPECT_EQ(tapsOf(now, before)(6, 2).carried, 1);  // a neighbour in the last column
+}
+
+/// How far, in pixels, what the first column remembers lies from what it shows after 400 frames in which the image
+/// moves to the right by `moved` pixels each; every frame shows where on the image it is.
+float memoryOfFirstColumn(float moved, const twohistory::ReprojectionParameters& p) {
+  constexpr int kSide = 8;
+  GuideImages now = plane(kSide, kSide);
+  now.motion.fill(vec2(-moved, 0));
+  const Image<Taps> taps = tapsOf(now, plane(kSide, kSide), p);
+  const twohistory::Policies<1> policies{{{twohistory::Weighting::frames, twohistory::Forgetting::decay, 0.98}}};
+  const Image<float> count(kSide, kSide, 1);
+  Image<float> before(kSide, kSide), after(kSide, kSide), shown(kSide, kSide);
+  Image<twohistory::Ledger<1>> ledger(kSide, kSide), next(kSide, kSide);
+  constexpr int kFrames = 400;
+  for (int f = 0; f < kFrames; ++f) {
+    for (int i = 0; i < kSide * kSide; ++i)
+      shown.data()[i] = static_cast<float>(i % kSide) - moved * static_cast<float>(f);
+    twohistory::accumulate<1>(taps.view(), count.view(), policies, ledger.view(), next.view(),
+                              twohistory::Mean<float>{}, std::array{before.view()}, shown.view(),
+                              std::array{after.view()});
+    std::swap(before, after), std::swap(ledger, next);
+  }
+  return before(0, 4) - shown(0, 4);
+}
+
+TEST(Reprojection, TheEdgeRemembersNoFurtherThanItsReach) {
+  for (const float moved : {0.1f, 0.5f, 0.9f}) {
+    EXPECT_LT(memoryOfFirstColumn(moved, {}), 8) << moved;
+    EXPECT_GT(memoryOfFirstColumn(moved, {}), 1) << moved;
+  }
+  twohistory::ReprojectionParameters any;
+  any.edgeReach = 1e6f;
+  EXPECT_NEAR(memoryOfFirstColumn(0.5f, any), 0.5f * 0.98f / 0.02f, 0.1f);  // control: 49 frames of half a pixel
 }
 
 TEST(Reprojection, TapsOnOtherSurfacesAreLeftOutAndTheRestRenormalised) {

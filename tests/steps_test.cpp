@@ -93,6 +93,15 @@ TEST(StepTiles, MoveWithTheImage) {
   EXPECT_LT(stepsOfABand(5, false), 0.25f);  // control: where the band has been
 }
 
+TEST(StepTiles, AreNotSlowedByATileThatIsNewBesideThem) {
+  StepTiles steps(kWidth, kHeight);
+  core::Image<Taps> taps = tapsOf([](int, int) { return core::vec2(0.5f, 0); });
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < StepTiles::kSide; ++x) taps(x, y) = {};
+  steps.update(taps);
+  EXPECT_NEAR(at(steps, StepTiles::kSide, 20).x, 0.5f, 1e-5f);  // between both tiles' middles
+}
+
 TEST(StepTiles, HaveNothingWhereTheImageIsNew) {
   StepTiles steps(kWidth, kHeight);
   for (int f = 0; f < 3; ++f) steps.update(tapsOf([](int, int) { return core::vec2(0.5f); }));

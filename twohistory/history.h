@@ -46,7 +46,7 @@ Taps premultipliedBy(const Taps& taps, const WeightOf& weightOf) {
   const auto product = [&](int k) { return taps.b[k] > 0 ? taps.b[k] * weightOf(k) : 0.0f; };
   const float b0 = product(0), b1 = product(1), b2 = product(2), b3 = product(3), sum = b0 + b1 + b2 + b3;
   if (!(sum > 0)) return taps;
-  return {taps.pixel, {b0 / sum, b1 / sum, b2 / sum, b3 / sum}};
+  return {taps.pixel, {b0 / sum, b1 / sum, b2 / sum, b3 / sum}, taps.carried};
 }
 
 template <int K, class Ledgers>
@@ -68,7 +68,7 @@ struct Recall {
   Recall(const Taps& t, const Ledgers& before, int width, const Policies<K>& policies, float n, const Steps& steps = {})
       : taps(t), samples(n), tap{read(before, 0), read(before, 1), read(before, 2), read(before, 3)} {
     const auto sums = sumTaps<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
-    change = advanceOf(sums.ledger, policies, n);
+    change = advanceOf(sums.ledger, policies, n, t.carried);
     gathered = mix(sums, t, width, steps, change, n);
     now = advance(gathered, change, n);
   }

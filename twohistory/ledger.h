@@ -57,12 +57,13 @@ struct Advance {
   std::array<Real, K> fresh{};   ///< w(n)
 };
 
+/// carried: of the frame's Taps.
 template <int K, class Real>
-Advance<K, Real> advanceOf(const Ledger<K, Real>& gathered, const Policies<K>& policies, Real n) {
+Advance<K, Real> advanceOf(const Ledger<K, Real>& gathered, const Policies<K>& policies, Real n, Real carried = 1) {
   Advance<K, Real> a;
   for (int j = 0; j < K; ++j) {
     a.fresh[j] = freshWeight(policies[j], n);
-    a.factor[j] = forgetFactor(policies[j].forgetting, policies[j].amount, gathered.weight[j], a.fresh[j]);
+    a.factor[j] = carried * forgetFactor(policies[j].forgetting, policies[j].amount, gathered.weight[j], a.fresh[j]);
   }
   return a;
 }
@@ -158,7 +159,7 @@ template <int K, class Real, class Steps = LikelySteps<Real>>
 Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before,
                        const Policies<K>& policies, Real n, const Steps& steps = {}) {
   const auto sums = sumTaps<K, Real>(taps, before);
-  return mix(sums, taps, before.width, steps, advanceOf(sums.ledger, policies, n), n);
+  return mix(sums, taps, before.width, steps, advanceOf<K, Real>(sums.ledger, policies, n, taps.carried), n);
 }
 
 }  // namespace twohistory

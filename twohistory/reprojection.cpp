@@ -16,8 +16,9 @@ struct Expected {
   float depth, tolerance;
 };
 
+/// q: inside the image.
 bool isSameSurface(const Guide& before, ivec2 q, const Expected& e, float normalCosine) {
-  if (!before.depth.contains(q.x, q.y) || before.id(q.x, q.y) != e.id) return false;
+  if (before.id(q.x, q.y) != e.id) return false;
   if (std::abs(before.depth(q.x, q.y) - e.depth) > e.tolerance) return false;
   return dot(before.normal.load(q.x, q.y), e.normal) >= normalCosine;
 }
@@ -36,15 +37,18 @@ Taps tapsOf(const Guide& now, const Guide& before, const ReprojectionParameters&
                           p.depthTolerance * now.depthSlope(x, y) + p.relativeDepthTolerance * depth};
   const vec2 corner = glm::floor(position), f = position - corner;
   const float b[4] = {(1 - f.x) * (1 - f.y), f.x * (1 - f.y), (1 - f.x) * f.y, f.x * f.y};
-  float sum = 0;
+  float sum = 0, outside = 0;
   for (int k = 0; k < 4; ++k) {
     const ivec2 q = ivec2(corner) + ivec2(k & 1, k >> 1);
-    if (!(b[k] > 0) || !isSameSurface(before, q, expected, p.normalCosine)) continue;
+    const bool isInside = before.depth.contains(q.x, q.y);
+    if (!isInside) outside += b[k];
+    if (!isInside || !(b[k] > 0) || !isSameSurface(before, q, expected, p.normalCosine)) continue;
     taps.pixel[k] = q.y * now.width() + q.x;
     sum += taps.b[k] = b[k];
   }
   if (sum < p.leastWeight) return {};
   for (float& w : taps.b) w /= sum;
+  taps.carried = std::max(0.0f, 1 - outside / p.edgeReach);  // [ledger edge]
   return taps;
 }
 

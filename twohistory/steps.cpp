@@ -31,8 +31,13 @@ StepTiles::StepTiles(int width, int height)
 StepTiles::Tile StepTiles::mixedAt(int x, int y) const {
   const TilePlace p(x, y, kSide, now_.width(), now_.height());
   const Tile &a = now_(p.i0, p.j0), &b = now_(p.i1, p.j0), &c = now_(p.i0, p.j1), &d = now_(p.i1, p.j1);
-  return {{p.mix(a.mean.x, b.mean.x, c.mean.x, d.mean.x), p.mix(a.mean.y, b.mean.y, c.mean.y, d.mean.y)},
-          p.mix(a.weight, b.weight, c.weight, d.weight)};
+  const float weight = p.mix(a.weight, b.weight, c.weight, d.weight);
+  if (!(weight > 0)) return {};
+  const auto mean = [&](float WalkSteps<float>::*axis) {
+    return p.mix(a.weight * a.mean.*axis, b.weight * b.mean.*axis, c.weight * c.mean.*axis, d.weight * d.mean.*axis) /
+           weight;
+  };
+  return {{mean(&WalkSteps<float>::x), mean(&WalkSteps<float>::y)}, weight};
 }
 
 WalkSteps<float> StepTiles::at(std::int32_t pixel) const { return mixedAt(pixel % width_, pixel / width_).mean; }
