@@ -167,6 +167,26 @@ LabConfig small() {
   return c;
 }
 
+/// MSE of `unweighted` under constant light, the camera moving, with that reach of the edge.
+double errorWithEdgeReach(const char* pixels) {
+  LabConfig c = labConfigFrom(
+      {},
+      {"width=32", "height=24", "frames=24", "first=12", "seeds=[1]", std::string("reprojection.edgeReach=") + pixels},
+      "");
+  c.variants = {"unweighted"};
+  std::erase_if(c.cases, [](const Case& each) { return each.name != "constant-moving"; });
+  for (const experiments::Row& row : runLab(c).rows)
+    if (row.metric == "MSE" && row.region == "full") return row.value;
+  return -1;
+}
+
+TEST(Lab, AnEdgeThatForgetsIsNoisierUnderConstantLight) {
+  const double exact = errorWithEdgeReach("1"), usual = errorWithEdgeReach("8"), any = errorWithEdgeReach("1e6");
+  EXPECT_GT(exact, 1.1 * usual);
+  EXPECT_GT(usual, 1.01 * any);
+  EXPECT_GT(any, 0);
+}
+
 TEST(Lab, GivesTheSameBitsOnAnyNumberOfThreads) {
   const auto rowsOn = [](std::size_t threads) {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);

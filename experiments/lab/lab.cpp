@@ -27,7 +27,7 @@ class Job {
         case_(c),
         seed_(seed),
         variants_(std::move(variants)),
-        input_(c, seed, config.width, config.height),
+        input_(c, seed, config.width, config.height, config.reprojection),
         memory_(config.width, config.height),
         image_(config.width, config.height),
         measures_(variants_.size()) {

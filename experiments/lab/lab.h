@@ -18,6 +18,7 @@ struct LabConfig {
   int frames = 96, first = 32;  ///< length of a sequence, and the first frame that counts
   int width = 128, height = 96;
   std::vector<std::uint64_t> seeds{1, 2, 3, 4};
+  twohistory::ReprojectionParameters reprojection;
   svgf::FilterParameters filter;  ///< of cases with a filter
   std::vector<Json> variants = defaultVariants();
   std::vector<Case> cases = defaultCases();
@@ -32,6 +33,7 @@ void describe(V& v, LabConfig& p) {
   v("width", p.width, "pixels", 8.0, 4096.0);
   v("height", p.height, "pixels", 8.0, 4096.0);
   v("seeds", p.seeds, "one independent sequence each");
+  v("reprojection", p.reprojection, "which pixels of the frame before are the same surface");
   v("filter", p.filter, "the spatial filter, in cases that have one");
   v("variants", p.variants, "names, or objects {like, name, histories, blend}");
   v("cases", p.cases, "signal, noise, motion and samples of each");

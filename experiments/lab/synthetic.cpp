@@ -1,7 +1,6 @@
 #include "experiments/lab/synthetic.h"
 
 #include "core/parallel.h"
-#include "twohistory/reprojection.h"
 
 namespace experiments::lab {
 namespace {
@@ -16,9 +15,11 @@ vec2 centred(int x, int y, int width, int height) {
 
 }  // namespace
 
-Synthetic::Synthetic(const Case& c, std::uint64_t seed, int width, int height)
+Synthetic::Synthetic(const Case& c, std::uint64_t seed, int width, int height,
+                     const twohistory::ReprojectionParameters& reprojection)
     : case_(c),
       seed_(seed),
+      reprojection_(reprojection),
       pattern_(c.pattern),
       noise_(c.noise, seed, width, height),
       guides_{core::GuideImages(width, height), core::GuideImages(width, height)},
@@ -74,7 +75,7 @@ Shaded Synthetic::next() {
   fillGuide(guides_[now_]);
   const core::Guide now = guides_[now_].view(), before = guides_[frame_ > 0 ? 1 - now_ : now_].view();
   if (frame_ > 0)
-    twohistory::reproject(now, before, {}, taps_);
+    twohistory::reproject(now, before, reprojection_, taps_);
   else
     taps_.fill({});
   fillTruth();

@@ -8,6 +8,7 @@
 #include "experiments/lab/pattern.h"
 #include "experiments/lab/signal.h"
 #include "experiments/pipeline.h"
+#include "twohistory/reprojection.h"
 
 namespace experiments::lab {
 
@@ -34,7 +35,8 @@ void describe(V& v, Case& p) {
 /// The frames of one case and seed, in order from 0.
 class Synthetic {
  public:
-  Synthetic(const Case& c, std::uint64_t seed, int width, int height);
+  Synthetic(const Case& c, std::uint64_t seed, int width, int height,
+            const twohistory::ReprojectionParameters& reprojection = {});
 
   /// The next frame. Its views stay valid until the next call.
   Shaded next();
@@ -49,6 +51,7 @@ class Synthetic {
 
   Case case_;
   std::uint64_t seed_;
+  twohistory::ReprojectionParameters reprojection_;
   int frame_ = -1, now_ = 0;
   Pattern pattern_;
   NoiseField noise_;
