@@ -181,7 +181,7 @@ double errorWithEdgeReach(const char* pixels) {
 }
 
 TEST(Lab, AnEdgeThatForgetsIsNoisierUnderConstantLight) {
-  const double exact = errorWithEdgeReach("1"), usual = errorWithEdgeReach("8"), any = errorWithEdgeReach("1e6");
+  const double exact = errorWithEdgeReach("1"), usual = errorWithEdgeReach("8"), any = errorWithEdgeReach("0");
   EXPECT_GT(exact, 1.1 * usual);
   EXPECT_GT(usual, 1.01 * any);
   EXPECT_GT(any, 0);

@@ -60,7 +60,7 @@ TEST(Reprojection, EveryTapHasItsOwnBoundsTest) {
   EXPECT_EQ(t.b, (std::array<float, 4>{1, 0, 0, 0}));
 }
 
-TEST(Reprojection, OnlyWhatLiesBeyondTheEdgeIsNotCarriedAlong) {
+TEST(Reprojection, AnEdgeThatForgetsLeavesBehindWhatLiesBeyondIt) {
   GuideImages now = plane(8, 6), before = plane(8, 6);
   now.motion.fill(vec2(0.5f, 0.25f));
   before.id(4, 3) = 9;
@@ -74,7 +74,9 @@ TEST(Reprojection, OnlyWhatLiesBeyondTheEdgeIsNotCarriedAlong) {
   p.edgeReach = 1;
   EXPECT_FLOAT_EQ(tapsOf(now, before, p)(7, 5).carried, 0.5f * 0.75f);  // what was inside
   now.motion.fill(vec2(1, 0));
-  EXPECT_EQ(tapsOf(now, before)(6, 2).carried, 1);  // a neighbour in the last column
+  EXPECT_EQ(tapsOf(now, before, p)(6, 2).carried, 1);  // all of it in the last column
+  now.motion.fill(vec2(0.5f));
+  EXPECT_EQ(tapsOf(now, before)(7, 5).carried, 1);  // unless told so, the edge forgets nothing
 }
 
 /// How far, in pixels, what the first column remembers lies from what it shows after 400 frames in which the image
@@ -100,14 +102,14 @@ float memoryOfFirstColumn(float moved, const twohistory::ReprojectionParameters&
   return before(0, 4) - shown(0, 4);
 }
 
-TEST(Reprojection, TheEdgeRemembersNoFurtherThanItsReach) {
+TEST(Reprojection, AnEdgeThatForgetsRemembersNoFurtherThanItsReach) {
+  twohistory::ReprojectionParameters p;
+  p.edgeReach = 8;
   for (const float moved : {0.1f, 0.5f, 0.9f}) {
-    EXPECT_LT(memoryOfFirstColumn(moved, {}), 8) << moved;
-    EXPECT_GT(memoryOfFirstColumn(moved, {}), 1) << moved;
+    EXPECT_LT(memoryOfFirstColumn(moved, p), 8) << moved;
+    EXPECT_GT(memoryOfFirstColumn(moved, p), 1) << moved;
   }
-  twohistory::ReprojectionParameters any;
-  any.edgeReach = 1e6f;
-  EXPECT_NEAR(memoryOfFirstColumn(0.5f, any), 0.5f * 0.98f / 0.02f, 0.1f);  // control: 49 frames of half a pixel
+  EXPECT_NEAR(memoryOfFirstColumn(0.5f, {}), 0.5f * 0.98f / 0.02f, 0.1f);  // control: 49 frames of half a pixel
 }
 
 TEST(Reprojection, TapsOnOtherSurfacesAreLeftOutAndTheRestRenormalised) {

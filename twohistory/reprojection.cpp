@@ -48,7 +48,7 @@ Taps tapsOf(const Guide& now, const Guide& before, const ReprojectionParameters&
   }
   if (sum < p.leastWeight) return {};
   for (float& w : taps.b) w /= sum;
-  taps.carried = std::max(0.0f, 1 - outside / p.edgeReach);  // [ledger edge]
+  if (p.edgeReach > 0) taps.carried = std::max(0.0f, 1 - outside / p.edgeReach);  // [ledger edge]
   return taps;
 }
 

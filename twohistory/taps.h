@@ -8,7 +8,7 @@ namespace twohistory {
 
 /// pixel: row-major indices into the previous frame. b: bilinear weights of the valid taps, renormalised to sum 1;
 /// invalid taps have b = 0 and any valid index. All b = 0: no history (reset). carried: share of the history's weight
-/// that comes along, in [0, 1]; below 1 where the pixel lay partly beyond the image's edge (reprojection.h).
+/// that comes along, in [0, 1]; below 1 where the image's edge forgets (reprojection.h).
 struct Taps {
   std::array<std::int32_t, 4> pixel{};
   std::array<float, 4> b{};

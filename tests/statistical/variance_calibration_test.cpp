@@ -1,7 +1,8 @@
 // Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
 // within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, motion that begins or
-// pauses and the margin from which the image comes in included. The controls are power sums that mix with b^2, with
-// b^1.5, and by a guess of past steps, and an edge that never forgets. Relative standard error of a
+// pauses included, but for the longest histories in the margin from which the image comes in (kMarginMost), who keep to
+// it where the image's edge forgets. The controls are power sums that mix with b^2, with b^1.5, and by a guess of past
+// steps, and an edge that does not forget. Relative standard error of a
 // ratio: below 0.6 % (means over some 1,000 pixels or more and 100 sequences), of a still difference below 1 %.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -84,7 +85,7 @@ void fillTaps(const Motion& m, int frame, float edgeReach, core::Image<Taps>& ta
     const float sum = t.b[0] + t.b[1] + t.b[2] + t.b[3];
     if (sum > 0)
       for (float& b : t.b) b /= sum;
-    t.carried = 1 - (1 - std::min(sum, 1.0f)) / edgeReach;
+    if (edgeReach > 0) t.carried = 1 - (1 - std::min(sum, 1.0f)) / edgeReach;
     taps(x, y) = t;
   });
 }
@@ -259,26 +260,34 @@ void print(const Motion& m, const Calibration& c) {
              c.difference[1]);
 }
 
-constexpr float kEdgeReach = twohistory::ReprojectionParameters{}.edgeReach;
+/// What the longest histories, of decay .98, keep to in the margin, where image comes in: a pixel at the edge has
+/// nothing but itself to be mixed with, so its neighbours fill with what it remembers, and are more alike than a walk
+/// without an edge makes them.
+bool isLongest(int history) { return history < kHistories && kPolicies[history].amount > 0.97; }
+constexpr double kMarginMost = 1.5;
 
-Calibration expectWithin(const Motion& m, double low, double high) {
-  const Calibration c = calibrate(m, kEdgeReach);
+Calibration expectWithin(const Motion& m, double low, double high, double marginMost = kMarginMost,
+                         float edgeReach = 0) {
+  const Calibration c = calibrate(m, edgeReach);
   print(m, c);
   for (int k = 0; k <= kHistories; ++k)
     for (int r = 0; r < kRegions; ++r) {
       const double ratio = c.ratio[0][k][r];
       if (std::isnan(ratio) && (r == 1 || r == 2) && m.counts != Counts::fovea) continue;
       EXPECT_GT(ratio, low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(ratio, high) << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(ratio, r == 3 && isLongest(k) ? marginMost : high)
+          << m.name << ", " << kCombination[k] << ", region " << r;
     }
   return c;
 }
 
 TEST(PredictedVariance, OfAStillCameraIsWithinTwoPercent) {
-  const Calibration c = expectWithin({"still", vec2(0), 0, 0}, 0.98, 1.02);
+  const Calibration c = expectWithin({"still", vec2(0), 0, 0}, 0.98, 1.02, 1.02);
   for (const double ratio : c.difference) EXPECT_NEAR(ratio, 1, 0.02);
 }
-TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) { expectWithin({"1, 0", vec2(1, 0), 0, 0}, 0.98, 1.02); }
+TEST(PredictedVariance, OfWholePixelMotionIsWithinTwoPercent) {
+  expectWithin({"1, 0", vec2(1, 0), 0, 0}, 0.98, 1.02, 1.02);
+}
 TEST(PredictedVariance, OfBilinearMotionIsWithinAQuarter) {
   for (const Motion& m : {Motion{"0.37, 0.21", vec2(0.37f, 0.21f), 0, 0}, Motion{"0.1, 0", vec2(0.1f, 0), 0, 0},
                           Motion{"random", vec2(0), 1, 0}, Motion{"turn 0.5 degrees", vec2(0), 0, 0.5f}})
@@ -310,11 +319,14 @@ TEST(PredictedVariance, OfMotionThatBeginsOrPausesIsWithinAQuarterWhereAGuessIsN
   expectWithin(pauses, 0.8, 1.25);
 }
 TEST(PredictedVariance, WhereTheImageComesInIsWithinAQuarterIfTheEdgeForgets) {
-  expectWithin({"0.8, 0", vec2(0.8f, 0), 0, 0}, 0.8, 1.25);
-  const Motion m{"0.7, 0.7", vec2(0.7f), 0, 0};
-  expectWithin(m, 0.8, 1.25);
-  constexpr float kAny = 1e6f;
-  EXPECT_GT(calibrate(m, kAny).ratio[0][5][3], 1.35) << "control: an edge that stands for all history, U .98";
+  for (const Motion& m :
+       {Motion{"0.5, 0, edge forgets", vec2(0.5f, 0), 0, 0}, Motion{"0.5, 0.5, edge forgets", vec2(0.5f), 0, 0},
+        Motion{"0.8, 0, edge forgets", vec2(0.8f, 0), 0, 0},
+        Motion{"0.5, 0, random counts, edge forgets", vec2(0.5f, 0), 0, 0, Counts::random}})
+    expectWithin(m, 0.8, 1.25, 1.25, 8);
+  const Motion m{"0.7, 0.7, edge forgets", vec2(0.7f), 0, 0};
+  expectWithin(m, 0.8, 1.25, 1.25, 8);
+  EXPECT_GT(calibrate(m, 0).ratio[0][5][3], 1.35) << "control: an edge that does not, U .98";
 }
 TEST(PredictedVariance, OfChangingCountsIsWithinAQuarter) {
   expectWithin({"0.37, 0.21, checkerboard", vec2(0.37f, 0.21f), 0, 0, Counts::checkerboard}, 0.8, 1.25);
