@@ -181,10 +181,10 @@ double errorWithEdgeReach(const char* pixels) {
 }
 
 TEST(Lab, AnEdgeThatForgetsIsNoisierUnderConstantLight) {
-  const double exact = errorWithEdgeReach("1"), usual = errorWithEdgeReach("8"), any = errorWithEdgeReach("0");
-  EXPECT_GT(exact, 1.1 * usual);
-  EXPECT_GT(usual, 1.01 * any);
-  EXPECT_GT(any, 0);
+  const double one = errorWithEdgeReach("1"), eight = errorWithEdgeReach("8"), never = errorWithEdgeReach("0");
+  EXPECT_GT(one, 1.1 * eight);
+  EXPECT_GT(eight, 1.01 * never);
+  EXPECT_GT(never, 0);
 }
 
 TEST(Lab, GivesTheSameBitsOnAnyNumberOfThreads) {

@@ -79,8 +79,8 @@ TEST(Reprojection, AnEdgeThatForgetsLeavesBehindWhatLiesBeyondIt) {
   EXPECT_EQ(tapsOf(now, before)(7, 5).carried, 1);  // unless told so, the edge forgets nothing
 }
 
-/// How far, in pixels, what the first column remembers lies from what it shows after 400 frames in which the image
-/// moves to the right by `moved` pixels each; every frame shows where on the image it is.
+/// How far, in pixels and on average, what the first column remembers lies from what it shows after 400 frames in which
+/// the image moves to the right by `moved` pixels each; every frame shows where on the image it is.
 float memoryOfFirstColumn(float moved, const twohistory::ReprojectionParameters& p) {
   constexpr int kSide = 8;
   GuideImages now = plane(kSide, kSide);

@@ -7,8 +7,8 @@
 //
 //   [ledger edge]  d <- d (1 - o / P)
 //
-// its memory is at most P / o frames long, the time in which P pixels come in. What that gains and costs:
-// docs/decisions.md, "The image's edge".
+// what it remembers is on average younger than P / o frames, the time in which P pixels come in. What that gains and
+// costs: docs/decisions.md, "The image's edge".
 #pragma once
 
 #include "core/guide.h"
