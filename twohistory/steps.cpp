@@ -31,16 +31,16 @@ StepTiles::StepTiles(int width, int height)
 StepTiles::Tile StepTiles::mixedAt(int x, int y) const {
   const TilePlace p(x, y, kSide, now_.width(), now_.height());
   const Tile &a = now_(p.i0, p.j0), &b = now_(p.i1, p.j0), &c = now_(p.i0, p.j1), &d = now_(p.i1, p.j1);
-  const float weight = p.mix(a.weight, b.weight, c.weight, d.weight);
-  if (!(weight > 0)) return {};
-  const auto mean = [&](float WalkSteps<float>::*axis) {
-    return p.mix(a.weight * a.mean.*axis, b.weight * b.mean.*axis, c.weight * c.mean.*axis, d.weight * d.mean.*axis) /
-           weight;
-  };
-  return {{mean(&WalkSteps<float>::x), mean(&WalkSteps<float>::y)}, weight};
+  return {{p.mix(a.sum.x, b.sum.x, c.sum.x, d.sum.x), p.mix(a.sum.y, b.sum.y, c.sum.y, d.sum.y)},
+          p.mix(a.weight, b.weight, c.weight, d.weight)};
 }
 
-WalkSteps<float> StepTiles::at(std::int32_t pixel) const { return mixedAt(pixel % width_, pixel / width_).mean; }
+WalkSteps<float> StepTiles::at(std::int32_t pixel) const {
+  const Tile tile = mixedAt(pixel % width_, pixel / width_);
+  if (!(tile.weight > 0)) return {0, 0};
+  const float one = 1 / tile.weight;
+  return {one * tile.sum.x, one * tile.sum.y};
+}
 
 StepTiles::Tile StepTiles::next(core::In<Taps> taps, int x0, int y0, int x1, int y1) const {
   Axis column, row;
@@ -59,9 +59,8 @@ StepTiles::Tile StepTiles::next(core::In<Taps> taps, int x0, int y0, int x1, int
     return std::clamp(middle + static_cast<int>(std::lround(moved / count)), 0, size - 1);
   };
   const Tile old = mixedAt(cameFrom((x0 + x1) / 2, column.moved, width_), cameFrom((y0 + y1) / 2, row.moved, height_));
-  const float kept = kKept * old.weight, weight = kept + 1;
-  return {{(kept * old.mean.x + column.mean()) / weight, (kept * old.mean.y + row.mean()) / weight},  // [ledger step]
-          weight};
+  return {{kKept * old.sum.x + column.mean(), kKept * old.sum.y + row.mean()},
+          kKept * old.weight + 1};  // [ledger step]
 }
 
 void StepTiles::update(core::In<Taps> taps) {

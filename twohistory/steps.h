@@ -34,8 +34,8 @@ class StepTiles {
 
  private:
   struct Tile {
-    WalkSteps<float> mean{0, 0};
-    float weight = 0;  ///< W
+    WalkSteps<float> sum{0, 0};  ///< W s_past: sums are what mixes
+    float weight = 0;            ///< W
   };
   Tile mixedAt(int x, int y) const;
   Tile next(core::In<Taps> taps, int x0, int y0, int x1, int y1) const;
