@@ -23,19 +23,19 @@ void accumulateColour(const FilterParameters& parameters, const std::array<twohi
     if (parameters.skipTwins && twohistory::canBeTwins(policies)) {
       if (s.twins.empty()) s.twins = s.accumulatedTwins = twohistory::TwinTiles(taps.width, taps.height);
       return twohistory::TwinAccumulation<twohistory::Mean<vec3>, PlanesView<const float>>{
-          taps, s.samples, policies, before, now, mean, s.history.views(), radiance, s.accumulated.sinks(), s.steps}
+          taps, s.samples, policies, before, now, mean, s.history.views(), radiance, s.accumulated.sinks(), s.walks}
           .run(s.accumulatedTwins);
     }
   }
   twohistory::accumulateInto<K>(taps, s.samples, policies, before, now, mean, s.history.views(), radiance,
-                                s.accumulated.sinks(), core::kDefaultTile, s.steps);
+                                s.accumulated.sinks(), core::kDefaultTile, s.walks);
 }
 
 }  // namespace
 
 template <int K>
 FilterState<K>::FilterState(int width, int height)
-    : steps(width, height),
+    : walks(width, height),
       samples(width, height),
       sampleVariance(width, height),
       variance(width, height),
@@ -52,7 +52,7 @@ template <int K>
 std::size_t FilterState<K>::bytes() const {
   std::size_t sum = history.bytes() + accumulated.bytes() + twins.bytes() + accumulatedTwins.bytes();
   for (int i = 0; i < 2; ++i) sum += ledger[i].bytes() + momentsLedger[i].bytes() + moments[i].bytes();
-  sum += clamped.bytes() + steps.bytes();
+  sum += clamped.bytes() + walks.bytes();
   for (const Image<float>* image : {&samples, &sampleVariance, &variance, &filteredVariance, &luminance, &tolerance})
     sum += image->bytes();
   return sum;
@@ -84,7 +84,7 @@ double clampFireflies(const FilterParameters& parameters, In<Taps> taps, PlanesV
     const float n = s.samples(x, y), luminance = core::luminance(colour);
     out.store(x, y, colour);
     if (!(n > 0) || !(luminance > 0)) return 0.0;
-    const twohistory::Recall<1> recall(taps(x, y), ledgers, taps.width, {keep}, n, s.steps);
+    const twohistory::Recall<1> recall(taps(x, y), ledgers, taps.width, {keep}, n, s.walks);
     const Moments m = MomentsMerge{}.gather(before, recall.step(0, {x, y}));
     if (m.innovations < parameters.spatialBelow) return 0.0;
     const float deviation = std::sqrt(m.sampleVariance * (1 / n + recall.gathered.covariance(0, 0)));
@@ -105,8 +105,8 @@ void accumulate(const FilterParameters& parameters, const std::array<twohistory:
   twohistory::accumulateInto<1>(taps, s.samples, {frames}, LedgerView<1>(s.momentsLedger[1 - s.now]),
                                 twohistory::LedgerSink<1>{s.momentsLedger[s.now], s.frame}, MomentsMerge{},
                                 std::array<In<Moments>, 1>{s.moments[1 - s.now]}, LuminanceOf{radiance},
-                                std::array<ImageView<Moments>, 1>{s.moments[s.now]}, core::kDefaultTile, s.steps);
-  s.steps.update(taps);
+                                std::array<ImageView<Moments>, 1>{s.moments[s.now]}, core::kDefaultTile, s.walks);
+  s.walks.update(taps);
 }
 
 #define INSTANTIATE(K)                                                                                     \

@@ -12,9 +12,9 @@
 #include "svgf/moments.h"
 #include "twohistory/history_view.h"
 #include "twohistory/packed_ledger.h"
-#include "twohistory/steps.h"
 #include "twohistory/twins.h"
 #include "twohistory/validation.h"
+#include "twohistory/walk_memory.h"
 
 namespace svgf {
 
@@ -68,7 +68,7 @@ struct FilterState {
   HistoryColours<K> history;                      ///< after the first level: fed back, and blended
   HistoryColours<K> accumulated;                  ///< before it
   twohistory::TwinTiles twins, accumulatedTwins;  ///< of each, for pairs that can have twins
-  twohistory::StepTiles steps;                    ///< of the taps that made the noise of neighbours alike
+  twohistory::WalkMemory walks;                   ///< of the noise through past frames' taps
   Image<float> samples;                           ///< sample counts after bad input was taken out
   Image<float> sampleVariance;                    ///< s2 a pixel
   Image<float> variance, filteredVariance;        ///< of history 0's luminance, before and after a level

@@ -64,8 +64,8 @@ TEST(Walk, IsExactAlongARow) {
 /// Where every frame's steps are this one's.
 template <class Real>
 Real likenessOf(const TapPairs& p, Real death, Real freshShare) {
-  return twohistory::tapLikeness(p, {static_cast<Real>(p.alongRow()), static_cast<Real>(p.alongColumn())}, death,
-                                 freshShare);
+  return twohistory::tapLikeness<Real>(p, {{static_cast<Real>(p.alongRow()), static_cast<Real>(p.alongColumn())}},
+                                       death, freshShare, Real(0));
 }
 
 /// Stationary variance of a pixel that the rule predicts, with the fresh share that a settled walk has.

@@ -93,8 +93,9 @@ struct Recall {
 /// taps: per pixel, into the previous frame. n: sample counts >= 0, 0 = nothing new. before / now: views of the K
 /// remembered values (anything with at(index), and store(x, y, value)); fresh: anything with load(x, y). Ledgers
 /// likewise: at(index) gives what becomes a Ledger<K>, store(x, y, ledger) takes one. All images have one size and no
-/// padding; before and now must not overlap. steps: what past frames' taps were like: a guess, or StepTiles (steps.h),
-/// which make predicted variances right when motion begins or keeps to a fraction of a pixel.
+/// padding; before and now must not overlap. steps: what past frames' taps were like: a guess, or WalkMemory
+/// (walk_memory.h), which makes predicted variances right when motion begins, keeps to a fraction of a pixel, or brings
+/// image in.
 template <int K, class LedgersBefore, class LedgersNow, class M, class Before, class Fresh, class Now,
           class Steps = LikelySteps<float>>
 void accumulateInto(In<Taps> taps, In<float> n, const Policies<K>& policies, const LedgersBefore& ledgersBefore,

@@ -118,18 +118,20 @@ TapSums<K, Real> sumTaps(const Taps& taps, const Before& before) {
   return sum;
 }
 
-/// How alike the taps of each history are (mixing.h). steps: of the frames before; a: what the frame does to it; n: its
+/// How alike the taps of each history are (mixing.h). walk: of the frames before; a: what the frame does to it; n: its
 /// samples.
 template <int K, class Real>
-std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const WalkSteps<Real>& steps,
+std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const Walk<Real>& walk,
                                const Advance<K, Real>& a, Real n) {
-  std::array<Real, K> r;
+  std::array<Real, K> r{};
   for (int j = 0; j < K; ++j) {
     const int i = pairIndex<K>(j, j);
     const Real noise = sums.ledger.powerSums[i] + sums.shared[i], added = n > 0 ? a.fresh[j] * a.fresh[j] / n : Real(0);
-    r[j] = noise > 0 ? tapLikeness(pairs, steps, deathRate(sums.ledger.ageSum[j], sums.ledger.weight[j], a.factor[j]),
-                                   std::min(Real(1), added / noise))
-                     : Real(0);
+    if (!(noise > 0)) continue;
+    const Real death = deathRate(sums.ledger.ageSum[j], sums.ledger.weight[j], a.factor[j]);
+    const Real perSample = n > 0 ? a.fresh[j] / n : Real(1);
+    const Real still = walk.arrival.isLongAgo() ? Real(0) : stillNoise(sums.ledger.weight[j] * perSample, death);
+    r[j] = tapLikeness(pairs, walk, death, std::min(Real(1), added / noise), still / noise);
   }
   return r;
 }
@@ -137,8 +139,8 @@ std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pai
 /// What the taps know [ledger taps]. Weights and age sums are sums, so they mix with b; power sums mix between b^2
 /// (independent taps) and b (one value), by how alike they are. The harmonic mean of two histories' likenesses keeps
 /// them a covariance matrix: 1 / (x_g + x_h) is positive semidefinite, and so is its product with another, term by
-/// term. steps(taps, pairs): WalkSteps of the frames before (LikelySteps, or StepTiles of steps.h); width: of the image
-/// that the taps point into.
+/// term. steps(taps, pairs): the Walk or WalkSteps of the frames before (WalkMemory, StepTiles, LikelySteps); width: of
+/// the image that the taps point into.
 template <int K, class Real, class Steps>
 Ledger<K, Real> mix(const TapSums<K, Real>& sums, const Taps& taps, int width, const Steps& steps,
                     const Advance<K, Real>& a, Real n) {

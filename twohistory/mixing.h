@@ -8,10 +8,17 @@
 //
 //   [ledger walk]   rho + 1 / rho = 2 + 2 u / s
 //   [ledger plane]  u -> (u + l) / (1 - l), l = s (1 - rho) of the other axis: leaving a row is like dying there
-//   [ledger alike]  r = min(1, rho min(3, (1 - F) / O)), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
+//   [ledger alike]  r = min(1, rho min(3, (1 - F - E) / O) + edge), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
 //   [ledger guess]  s -> s + 0.9 s / (s + 0.05) (1/3 - s), for who has no better knowledge of past steps (steps.h)
 //
-// F is the share of the noise that a frame's fresh samples have, O what a settled walk has older than a frame.
+// F is the share of the noise that a frame's fresh samples have, O what a settled walk has older than a frame, E the
+// share that walked in from the image's edge, where nothing steps in from beyond (arrivals.h): T frames ago,
+//
+//   [ledger share]  E_x = d^2T_x C_still / C u / (u + l_y) at the left or right edge, where walks go up and down alone
+//   [ledger still]  C_still = w / n W / (1 + d), the power sum of a history that has never stepped
+//
+// of which "edge" is the part that taps have in common: what lies in a row is one value, in a column it is as alike as
+// along the edge; and the same for the upper and lower edge.
 // Derivation, and how exact this is: docs/history.md.
 #pragma once
 
@@ -19,6 +26,7 @@
 #include <array>
 #include <cmath>
 
+#include "twohistory/arrivals.h"
 #include "twohistory/taps.h"
 
 namespace twohistory {
@@ -64,6 +72,16 @@ struct WalkSteps {
   Real x, y;
 };
 
+/// What a pixel's noise has walked through before a frame.
+template <class Real>
+struct Walk {
+  WalkSteps<Real> steps;
+  Arrival arrival;  ///< over the image's edge
+
+  /// Implicit: who remembers steps alone takes it that nothing came in.
+  Walk(const WalkSteps<Real>& s, const Arrival& a = {}) : steps(s), arrival(a) {}
+};
+
 /// What past frames' steps were likely like, if this frame's is all that is known: between it and the mean of a
 /// fraction of a pixel that is anything, 1/3. An axis along which nothing moves stays so.
 template <class Real>
@@ -74,17 +92,60 @@ struct LikelySteps {
   }
 };
 
-/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; steps: of the frames before; death: u > 0;
-/// freshShare: F in [0, 1].
+/// d^2T of a history that dies at the rate u > 0: exact for whole T >= 0, linear between, 0 from kLongAgo on.
 template <class Real>
-Real tapLikeness(const TapPairs& p, const WalkSteps<Real>& steps, Real death, Real freshShare) {
-  const Real sx = steps.x, sy = steps.y, all = p.all();
-  const Real lostX = sx * (1 - walkCorrelation(death, sx)), lostY = sy * (1 - walkCorrelation(death, sy));
-  const Real x = walkCorrelation(death + lostY, sx * (1 - lostY));  // [ledger plane], both divided by 1 - l
-  const Real y = walkCorrelation(death + lostX, sy * (1 - lostX));
+Real survival(Real death, float frames) {
+  if (frames >= Arrival::kLongAgo) return 0;
+  const int whole = static_cast<int>(frames);
+  const Real kept = 1 / (1 + death);
+  Real result = 1 - (frames - whole) * (1 - kept), power = kept;
+  for (int bits = whole; bits > 0; bits /= 2, power *= power)
+    if (bits % 2) result *= power;
+  return result;
+}
+
+/// Shares of a pixel's noise that stem from the image's edge.
+template <class Real>
+struct EdgeShares {
+  Real corner = 0;    ///< a corner, where nothing steps: one value
+  Real x = 0, y = 0;  ///< the left or right edge, where steps are up and down; the upper or lower one
+
+  Real all() const { return corner + x + y; }
+};
+
+/// What reached one edge after the other is a corner's since the later of the two. lost: l of both axes; still: C_still
+/// over the pixel's power sum.
+template <class Real>
+EdgeShares<Real> edgeShares(const Arrival& arrival, const WalkSteps<Real>& lost, Real death, Real still) {
+  if (arrival.isLongAgo()) return {};
+  const Real x = survival(death, arrival.x), y = survival(death, arrival.y);
+  const auto share = [&](Real survived, Real l) { return still * std::max(Real(0), survived) * death / (death + l); };
+  const Real corner = std::min(Real(1), share(std::min(x, y), Real(0)));  // [ledger share]
+  const Real inX = std::min(1 - corner, share(x - y, lost.y));
+  return {corner, inX, std::min(1 - corner - inX, share(y - x, lost.x))};
+}
+
+/// C_still. weight: w / n W; death: u > 0.
+template <class Real>
+Real stillNoise(Real weight, Real death) {
+  return weight / (1 + 1 / std::sqrt(1 + death));  // [ledger still]
+}
+
+/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; walk: of the frames before; death: u > 0;
+/// freshShare: F in [0, 1]; still: C_still over the taps' power sum.
+template <class Real>
+Real tapLikeness(const TapPairs& p, const Walk<Real>& walk, Real death, Real freshShare, Real still) {
+  const Real sx = walk.steps.x, sy = walk.steps.y, all = p.all();
+  const Real aloneX = walkCorrelation(death, sx), aloneY = walkCorrelation(death, sy);
+  const WalkSteps<Real> lost{sx * (1 - aloneX), sy * (1 - aloneY)};
+  const Real x = walkCorrelation(death + lost.y, sx * (1 - lost.y));  // [ledger plane], both divided by 1 - l
+  const Real y = walkCorrelation(death + lost.x, sy * (1 - lost.x));
   const Real common = p.row * x + p.column * y + p.diagonal * x * y;
-  const Real older = (1 - freshShare) * (1 + death) / (1 - all + common);  // (1 - F) / O
-  return std::min(Real(1), common / all * std::min(Real(3), older));       // [ledger alike]
+  const EdgeShares<Real> edge = edgeShares(walk.arrival, lost, death, still);
+  const Real older = std::max(Real(0), 1 - freshShare - edge.all()) * (1 + death) / (1 - all + common);  // (1 - F) / O
+  const Real onEdge = edge.corner * all + edge.x * (p.row + (p.column + p.diagonal) * aloneY) +
+                      edge.y * (p.column + (p.row + p.diagonal) * aloneX);
+  return std::min(Real(1), (common * std::min(Real(3), older) + onEdge) / all);  // [ledger alike]
 }
 
 /// u of a history that keeps d of its weight a frame and has the age sum A and weight W: mostly its decay's, and its

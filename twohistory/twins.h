@@ -6,7 +6,7 @@
 #include "twohistory/history.h"
 #include "twohistory/history_view.h"
 #include "twohistory/packed_ledger.h"
-#include "twohistory/steps.h"
+#include "twohistory/walk_memory.h"
 
 namespace twohistory {
 
@@ -98,7 +98,7 @@ class TwinAccumulation {
   std::array<HistoryView, 2> valueBefore;
   const Fresh& fresh;
   std::array<HistorySink, 2> valueNow;
-  const StepTiles& steps;
+  const WalkMemory& walks;
 
   /// twins: on entry what the planes of valueNow still hold from the last frame, on return what they hold now.
   void run(TwinTiles& twins) const {
@@ -133,7 +133,7 @@ class TwinAccumulation {
   [[gnu::always_inline]] void stepTwin(int x, int y, const Taps& t, float count, std::uint16_t ratio,
                                        bool isZero) const {
     const First first{before.packed};
-    const Recall<1> recall(t, first, n.width, {policies[0]}, count, steps);
+    const Recall<1> recall(t, first, n.width, {policies[0]}, count, walks);
     now.packed(x, y) = StoredLedger<2>::twin(recall.now, ratio, now.dither(x, y));
     const Step step = recall.step(0, {x, y});
     valueNow[0].store(x, y, merge.merge(merge.gather(valueBefore[0], step), fresh.load(x, y), step));
@@ -142,7 +142,7 @@ class TwinAccumulation {
 
   /// Returns whether the pixel has become a twin.
   [[gnu::noinline]] bool stepBoth(int x, int y) const {
-    const Recall<2> recall(taps(x, y), before, n.width, policies, n(x, y), steps);
+    const Recall<2> recall(taps(x, y), before, n.width, policies, n(x, y), walks);
     for (int j = 0; j < 2; ++j) {
       const Step step = recall.step(j, {x, y});
       valueNow[j].store(x, y, merge.merge(merge.gather(valueBefore[j], step), fresh.load(x, y), step));
