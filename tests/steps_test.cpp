@@ -62,7 +62,7 @@ TEST(StepTiles, ForgetWhatIsLongAgo) {
   float before = 0;
   for (int f = 1; f <= 12; ++f) {
     steps.update(tapsOf([](int, int) { return core::vec2(0.5f, 0); }));
-    EXPECT_NEAR(at(steps, 60, 20).x, 0.5f * (1 - std::pow(0.6f, static_cast<float>(f))), 1e-4f);  // [ledger step]
+    EXPECT_NEAR(at(steps, 60, 20).x, 0.5f * (1 - std::pow(0.75f, static_cast<float>(f))), 1e-4f);  // [ledger step]
     EXPECT_GT(at(steps, 60, 20).x, before);
     before = at(steps, 60, 20).x;
   }

@@ -8,7 +8,8 @@
 //
 //   [ledger walk]   rho + 1 / rho = 2 + 2 u / s
 //   [ledger plane]  u -> (u + l) / (1 - l), l = s (1 - rho) of the other axis: leaving a row is like dying there
-//   [ledger alike]  r = min(1, rho min(3, (1 - F - E) / O) + edge), O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
+//   [ledger alike]  r = min(1, rho min(3, o + 0.2 max(0, o - 1)) + edge), o = (1 - F - E) / O,
+//                   O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
 //   [ledger guess]  s -> s + 0.9 s / (s + 0.05) (1/3 - s), for who has no better knowledge of past steps (steps.h)
 //
 // F is the share of the noise that a frame's fresh samples have, O what a settled walk has older than a frame, E the
@@ -142,10 +143,11 @@ Real tapLikeness(const TapPairs& p, const Walk<Real>& walk, Real death, Real fre
   const Real y = walkCorrelation(death + lost.x, sy * (1 - lost.x));
   const Real common = p.row * x + p.column * y + p.diagonal * x * y;
   const EdgeShares<Real> edge = edgeShares(walk.arrival, lost, death, still);
-  const Real older = std::max(Real(0), 1 - freshShare - edge.all()) * (1 + death) / (1 - all + common);  // (1 - F) / O
+  const Real older = std::max(Real(0), 1 - freshShare - edge.all()) * (1 + death) / (1 - all + common);  // o
+  const Real alike = std::min(Real(3), older + Real(0.2) * std::max(Real(0), older - 1));
   const Real onEdge = edge.corner * all + edge.x * (p.row + (p.column + p.diagonal) * aloneY) +
                       edge.y * (p.column + (p.row + p.diagonal) * aloneX);
-  return std::min(Real(1), (common * std::min(Real(3), older) + onEdge) / all);  // [ledger alike]
+  return std::min(Real(1), (common * alike + onEdge) / all);  // [ledger alike]
 }
 
 /// u of a history that keeps d of its weight a frame and has the age sum A and weight W: mostly its decay's, and its

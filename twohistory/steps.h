@@ -3,7 +3,7 @@
 // A pixel's noise was mixed by the steps of all frames that it remembers, of which this frame's is the next. The mean
 // of past steps is itself a history, of one value a tile of pixels, carried along with the image:
 //
-//   [ledger step]  s_past <- (0.6 W s_past + s) / (0.6 W + 1),  W <- 0.6 W + 1,  s = sum s_i^2 / sum s_i over a tile
+//   [ledger step]  s_past <- (0.75 W s_past + s) / (0.75 W + 1),  W <- 0.75 W + 1,  s = sum s_i^2 / sum s_i over a tile
 //
 // s weights pixels by how much they move, so that what stands still does not slow down what moves before it.
 #pragma once

@@ -307,14 +307,18 @@ TEST(PredictedVariance, OfMotionAlongARowIsWithinAQuarterWhereControlsClaimTooLi
   expectWithin({"0.5, 0.1", vec2(0.5f, 0.1f), 0, 0}, 0.8, 1.25);
 }
 TEST(PredictedVariance, OfMotionThatBeginsOrPausesIsWithinAQuarterWhereAGuessIsNot) {
-  for (const int frames : {2, 9}) {
-    Motion m{frames == 2 ? "0.3, 0.3 since 2 frames" : "0.3, 0.3 since 9 frames", vec2(0.3f), 0, 0};
+  const auto since = [](int frames, const char* name, float step) {
+    Motion m{name, vec2(step), 0, 0};
     m.way = Way::begins, m.begins = kFrames - frames;
-    const Calibration c = expectWithin(m, 0.8, 1.25);
-    if (frames == 2) {
-      EXPECT_LT(c.ratio[3][0][0], 0.7) << "control: guessed steps, history U";
-    }
-  }
+    return m;
+  };
+  const Calibration c = expectWithin(since(2, "0.3, 0.3 since 2 frames", 0.3f), 0.8, 1.25);
+  EXPECT_LT(c.ratio[3][0][0], 0.7) << "control: guessed steps, history U";
+  expectWithin(since(4, "0.3, 0.3 since 4 frames", 0.3f), 0.8, 1.25);
+  expectWithin(since(9, "0.3, 0.3 since 9 frames", 0.3f), 0.8, 1.25);
+  expectWithin(since(16, "0.3, 0.3 since 16 frames", 0.3f), 0.8, 1.25);
+  // The worst of some forty beginnings, U .98 in the fovea: more alike than a settled walk (docs/results.md, 10).
+  expectWithin(since(12, "0.2, 0.2 since 12 frames", 0.2f), 0.8, 1.3);
   Motion pauses{"0.5, 0 in every other frame", vec2(0.5f, 0), 0, 0};
   pauses.way = Way::pauses;
   expectWithin(pauses, 0.8, 1.25);
