@@ -9,7 +9,7 @@ namespace twohistory {
 namespace {
 
 constexpr float kKept = 0.75f;  // a frame; docs/decisions.md "Past steps are remembered"
-constexpr int kStride = 4;     // pixels between those that are looked at
+constexpr int kStride = 4;      // pixels between those that are looked at
 
 /// Steps along one axis of a tile's pixels.
 struct Axis {
