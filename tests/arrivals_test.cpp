@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "twohistory/ledger.h"
@@ -114,13 +114,13 @@ TEST(Arrivals, SurvivalIsTheDecaysPower) {
       EXPECT_NEAR(twohistory::survival(1 / (decay * decay) - 1, frames), std::pow(decay, 2 * double(frames)), 1e-12);
   EXPECT_NEAR(twohistory::survival(1 / 0.96 - 1, 3.5f), 0.5 * (std::pow(0.96, 3) + std::pow(0.96, 4)), 1e-6);
   EXPECT_EQ(twohistory::survival(1e-12, Arrival::kLongAgo), 0);
-  EXPECT_EQ(twohistory::survival(1e6f, 1e-3f) > 0, true);
+  EXPECT_GT(twohistory::survival(1e6f, 1e-3f), 0);
 }
 
-/// Frames of a row that moves to the right by moved[f], with one sample of variance 1 a pixel and frame.
 constexpr int kMargin = 32;  ///< pixels beside the edge
 
-/// Exact variances beside the edge: the covariance matrix of the row, whose first pixel has nothing but itself.
+/// Exact mean variance beside the edge of a row that moves to the right by moved[f], with one sample of variance 1 a
+/// pixel and frame: the row's covariance matrix; its first pixel has nothing but itself.
 double exactVariance(const std::vector<float>& moved, double decay) {
   using Row = std::vector<double>;
   std::vector<Row> now(kWidth, Row(kWidth, 0.0)), half = now;

@@ -8,7 +8,7 @@
 namespace twohistory {
 namespace {
 
-constexpr float kKept = 0.75f;  // a frame; docs/decisions.md "Past steps are remembered"
+constexpr float kKept = 0.75f;  // a frame; docs/decisions.md "Steps are remembered for four frames"
 constexpr int kStride = 4;      // pixels between those that are looked at
 
 /// Steps along one axis of a tile's pixels.

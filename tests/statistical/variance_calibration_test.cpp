@@ -1,9 +1,9 @@
 // Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
 // within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, motion that begins or
 // pauses and the margin from which the image comes in included, but for one beginning (1.3) and the first pixels beside
-// the edge (kBesideMost). The controls are power sums that mix with b^2, with
-// b^1.5, by a guess of past steps, and by steps without arrivals. Relative standard error of a ratio: below 0.6 %
-// (means over some 1,000 pixels or more and 100 sequences), of a still difference below 1 %.
+// the edge (kBesideMost). The controls are power sums that mix with b^2, with b^1.5, by a guess of past steps, and by
+// steps without arrivals. Relative standard error of a ratio: below 0.6 % (means over some 1,000 pixels or more and 100
+// sequences), of a still difference below 1 %.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -325,11 +325,10 @@ TEST(PredictedVariance, OfMotionThatBeginsOrPausesIsWithinAQuarterWhereAGuessIsN
   expectWithin(pauses, 0.8, 1.25);
 }
 TEST(PredictedVariance, WhereTheImageComesInIsWithinAQuarterWhereStepsAloneClaimTooLittle) {
-  constexpr int kLongest = 5;  // U .98
-  for (const Motion& m : {Motion{"0.7, 0.7", vec2(0.7f), 0, 0}, Motion{"0.8, 0", vec2(0.8f, 0), 0, 0}}) {
-    const Calibration c = expectWithin(m, 0.8, 1.25);
-    EXPECT_GT(c.ratio[4][kLongest][3], 1.25) << "control: steps alone, margin, " << m.name;
-  }
+  constexpr int kLongest = 5;                                                                             // U .98
+  const auto bySteps = [](const Motion& m) { return expectWithin(m, 0.8, 1.25).ratio[4][kLongest][3]; };  // control
+  EXPECT_GT(bySteps({"0.7, 0.7", vec2(0.7f), 0, 0}), 1.35);
+  EXPECT_GT(bySteps({"0.8, 0", vec2(0.8f, 0), 0, 0}), 1.25);
   expectWithin({"-0.3, 0.6", vec2(-0.3f, 0.6f), 0, 0}, 0.8, 1.25);
   expectWithin({"0.7, 0.7, random counts", vec2(0.7f), 0, 0, Counts::random}, 0.8, 1.25);
   Motion begins{"0.5, 0.5 since 16 frames", vec2(0.5f), 0, 0};
