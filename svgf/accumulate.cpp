@@ -106,7 +106,7 @@ void accumulate(const FilterParameters& parameters, const std::array<twohistory:
                                 twohistory::LedgerSink<1>{s.momentsLedger[s.now], s.frame}, MomentsMerge{},
                                 std::array<In<Moments>, 1>{s.moments[1 - s.now]}, LuminanceOf{radiance},
                                 std::array<ImageView<Moments>, 1>{s.moments[s.now]}, core::kDefaultTile, s.walks);
-  s.walks.update(taps);
+  s.walks.update(taps, s.samples);
 }
 
 #define INSTANTIATE(K)                                                                                     \

@@ -149,7 +149,10 @@ double predictedVariance(const std::vector<float>& moved, double decay) {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x)
         now(x, y) = advance(gather<1, float>(taps(x, y), before, policies, 1.0f, memory), policies, 1.0f);
-    memory.update(taps);
+    if constexpr (std::is_same_v<Memory, WalkMemory>)
+      memory.update(taps, core::Image<float>(kWidth, kHeight, 1));
+    else
+      memory.update(taps);
     std::swap(before, now);
   }
   double sum = 0;

@@ -64,8 +64,8 @@ TEST(Walk, IsExactAlongARow) {
 /// Where every frame's steps are this one's.
 template <class Real>
 Real likenessOf(const TapPairs& p, Real death, Real freshShare) {
-  return twohistory::tapLikeness<Real>(p, {{static_cast<Real>(p.alongRow()), static_cast<Real>(p.alongColumn())}},
-                                       death, freshShare, Real(0));
+  const twohistory::WalkSteps<Real> steps{static_cast<Real>(p.alongRow()), static_cast<Real>(p.alongColumn())};
+  return twohistory::tapLikeness<Real>(p, settledNoise(p, steps, death), freshShare, {});
 }
 
 /// Stationary variance of a pixel that the rule predicts, with the fresh share that a settled walk has.
@@ -118,23 +118,25 @@ TEST(TapPairs, AreTheStepsOfTheWalkWhateverTheOrder) {
   EXPECT_NEAR(twohistory::pairsOf({{0, 8, 0, 0}, {0.5f, 0.5f, 0, 0}}, 7).diagonal, 0.5f, 1e-6f);
 }
 
+float deathRateOf(float age, float factor) { return twohistory::deathRate<float>({1, age, factor}); }
+
 TEST(Likeness, IsNothingAtFirstAndGrowsWithAgeUpToOne) {
   const TapPairs p = twohistory::pairsOf(tapsAt(0.3f, 0.4f, 9), 9);
   float before = 0;
-  EXPECT_LT(likenessOf(p, twohistory::deathRate(0.0f, 1.0f, 0.0f), 0.0f), 1e-5f);
+  EXPECT_LT(likenessOf(p, deathRateOf(0, 0), 0.0f), 1e-5f);
   for (const float decay : {0.2f, 0.5f, 0.8f, 0.95f, 0.98f, 0.999f, 0.99999f}) {
-    const float death = twohistory::deathRate(decay / (1 - decay), 1.0f, decay), r = likenessOf(p, death, 0.0f);
+    const float death = deathRateOf(decay / (1 - decay), decay), r = likenessOf(p, death, 0.0f);
     EXPECT_GT(r, before);
     EXPECT_LE(r, 1);
     EXPECT_GE(r, likenessOf(p, death, 0.5f));  // what is fresh is no neighbour's
     before = r;
   }
   EXPECT_GT(before, 0.9f);
-  EXPECT_GT(before, 1.2f * likenessOf(p, twohistory::deathRate(1e5f, 1.0f, 0.99999f), 0.5f));
+  EXPECT_GT(before, 1.2f * likenessOf(p, deathRateOf(1e5f, 0.99999f), 0.5f));
   for (const float age : {0.0f, 1e-30f, 1e7f, 1e30f})
     for (const float factor : {0.0f, 1e-30f, 0.5f, 1.0f})
       for (const float share : {0.0f, 1.0f}) {
-        const float r = likenessOf(p, twohistory::deathRate(age, 1.0f, factor), share);
+        const float r = likenessOf(p, deathRateOf(age, factor), share);
         EXPECT_TRUE(r >= 0 && r <= 1) << age << ", " << factor << ", " << share << ": " << r;
       }
 }

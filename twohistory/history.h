@@ -69,7 +69,7 @@ struct Recall {
       : taps(t), samples(n), tap{read(before, 0), read(before, 1), read(before, 2), read(before, 3)} {
     const auto sums = sumTaps<K, float>(Taps{{0, 1, 2, 3}, t.b}, In<Ledger<K>>{tap.data(), 4, 1, 4});
     change = advanceOf(sums.ledger, policies, n, t.carried);
-    gathered = mix(sums, t, width, steps, change, n);
+    gathered = mix(sums, t, width, steps, policies, change, n);
     now = advance(gathered, change, n);
   }
   /// In place: a ledger that is unpacked field by field and then copied waits for its stores.

@@ -118,20 +118,20 @@ TapSums<K, Real> sumTaps(const Taps& taps, const Before& before) {
   return sum;
 }
 
-/// How alike the taps of each history are (mixing.h). walk: of the frames before; a: what the frame does to it; n: its
-/// samples.
-template <int K, class Real>
-std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const Walk<Real>& walk,
-                               const Advance<K, Real>& a, Real n) {
+/// How alike the taps of each history are (mixing.h). walk: of the frames before, as SettledWalk; a: what the frame
+/// that comes does to it; n: its samples.
+template <int K, class Real, class Walk>
+std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pairs, const Walk& walk,
+                               const Policies<K>& policies, const Advance<K, Real>& a, Real n) {
   std::array<Real, K> r{};
   for (int j = 0; j < K; ++j) {
     const int i = pairIndex<K>(j, j);
-    const Real noise = sums.ledger.powerSums[i] + sums.shared[i], added = n > 0 ? a.fresh[j] * a.fresh[j] / n : Real(0);
+    const Real noise = sums.ledger.powerSums[i] + sums.shared[i];
     if (!(noise > 0)) continue;
-    const Real death = deathRate(sums.ledger.ageSum[j], sums.ledger.weight[j], a.factor[j]);
-    const Real perSample = n > 0 ? a.fresh[j] / n : Real(1);
-    const Real still = walk.arrival.isLongAgo() ? Real(0) : stillNoise(sums.ledger.weight[j] * perSample, death);
-    r[j] = tapLikeness(pairs, walk, death, std::min(Real(1), added / noise), still / noise);
+    const Remembered<Real> history{sums.ledger.weight[j], sums.ledger.ageSum[j], a.factor[j]};
+    const Real freshShare = std::min(Real(1), walk.freshNoise(policies[j], n) / noise);
+    const Real perNoise = (n > 0 ? a.fresh[j] / n : Real(1)) / noise;
+    r[j] = tapLikeness(pairs, walk.older(pairs, history), freshShare, walk.edge(pairs, history, perNoise));
   }
   return r;
 }
@@ -139,15 +139,15 @@ std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pai
 /// What the taps know [ledger taps]. Weights and age sums are sums, so they mix with b; power sums mix between b^2
 /// (independent taps) and b (one value), by how alike they are. The harmonic mean of two histories' likenesses keeps
 /// them a covariance matrix: 1 / (x_g + x_h) is positive semidefinite, and so is its product with another, term by
-/// term. steps(taps, pairs): the Walk or WalkSteps of the frames before (WalkMemory, StepTiles, LikelySteps); width: of
-/// the image that the taps point into.
+/// term. steps(taps, pairs): the walk of the frames before, or its steps (WalkMemory, StepTiles, LikelySteps); width:
+/// of the image that the taps point into.
 template <int K, class Real, class Steps>
 Ledger<K, Real> mix(const TapSums<K, Real>& sums, const Taps& taps, int width, const Steps& steps,
-                    const Advance<K, Real>& a, Real n) {
+                    const Policies<K>& policies, const Advance<K, Real>& a, Real n) {
   Ledger<K, Real> mixed = sums.ledger;
   const TapPairs pairs = pairsOf(taps, width);
   if (!(pairs.all() > 0)) return mixed;
-  const std::array<Real, K> r = likenesses<K, Real>(sums, pairs, steps(taps, pairs), a, n);
+  const std::array<Real, K> r = likenesses<K, Real>(sums, pairs, walkOf(steps(taps, pairs)), policies, a, n);
   for (int i = 0, g = 0; g < K; ++g)
     for (int h = g; h < K; ++h, ++i) {
       const Real both = g == h ? r[g] : 2 * r[g] * r[h] / std::max(r[g] + r[h], Real(1e-20));
@@ -161,7 +161,7 @@ template <int K, class Real, class Steps = LikelySteps<Real>>
 Ledger<K, Real> gather(const Taps& taps, std::type_identity_t<core::In<Ledger<K, Real>>> before,
                        const Policies<K>& policies, Real n, const Steps& steps = {}) {
   const auto sums = sumTaps<K, Real>(taps, before);
-  return mix(sums, taps, before.width, steps, advanceOf<K, Real>(sums.ledger, policies, n, taps.carried), n);
+  return mix(sums, taps, before.width, steps, policies, advanceOf<K, Real>(sums.ledger, policies, n, taps.carried), n);
 }
 
 }  // namespace twohistory

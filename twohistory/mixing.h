@@ -4,22 +4,20 @@
 //
 // Let every frame move an image by a fraction f of a pixel and forget it to the factor d. The covariance R_n of pixels
 // n apart follows R_n <- d^2 (s/2 R_(n-1) + (1 - s) R_n + s/2 R_(n+1)) + what is fresh at n = 0, with s = 2 f (1 - f):
-// a random walk that dies at the rate u = 1 / d^2 - 1. Where it has settled R_n = rho^|n| R_0, and
+// a random walk that dies at the rate u = 1 / d^2 - 1. Of its noise the share O is older than a frame, and of that taps
+// have q in common. Who remembers the walk knows both (walk_tiles.h). Where it has settled R_n = rho^|n| R_0, and
 //
 //   [ledger walk]   rho + 1 / rho = 2 + 2 u / s
 //   [ledger plane]  u -> (u + l) / (1 - l), l = s (1 - rho) of the other axis: leaving a row is like dying there
-//   [ledger alike]  r = min(1, rho min(3, o + 0.2 max(0, o - 1)) + edge), o = (1 - F - E) / O,
-//                   O = (1 - S (1 - rho)) / (1 + u), S = 1 - sum b^2
-//   [ledger guess]  s -> s + 0.9 s / (s + 0.05) (1/3 - s), for who has no better knowledge of past steps (steps.h)
+//   [ledger settled]  O = (1 - S (1 - rho)) / (1 + u),  q = rho / O,  S = 1 - sum b^2
+//   [ledger guess]  s -> s + 0.9 s / (s + 0.05) (1/3 - s), for who has no better knowledge of past steps
 //
-// F is the share of the noise that a frame's fresh samples have, O what a settled walk has older than a frame, E the
-// share that walked in from the image's edge, where nothing steps in from beyond (arrivals.h): T frames ago,
+// In a pixel whose counts change the share F of the last frame's samples is another than 1 - O, and what is older than
+// the rest is more alike:
 //
-//   [ledger share]  E_x = d^2T_x C_still / C u / (u + l_y) at the left or right edge, where walks go up and down alone
-//   [ledger still]  C_still = w / n W / (1 + d), the power sum of a history that has never stepped
+//   [ledger alike]  r = min(1, q min(3 O, o + 0.2 max(0, o - O)) + edge),  o = 1 - F - E
 //
-// of which "edge" is the part that taps have in common: what lies in a row is one value, in a column it is as alike as
-// along the edge; and the same for the upper and lower edge.
+// E: the share that walked in from the image's edge, of which taps have "edge" in common (edge_noise.h).
 // Derivation, and how exact this is: docs/history.md.
 #pragma once
 
@@ -27,7 +25,7 @@
 #include <array>
 #include <cmath>
 
-#include "twohistory/arrivals.h"
+#include "twohistory/policy.h"
 #include "twohistory/taps.h"
 
 namespace twohistory {
@@ -73,16 +71,6 @@ struct WalkSteps {
   Real x, y;
 };
 
-/// What a pixel's noise has walked through before a frame.
-template <class Real>
-struct Walk {
-  WalkSteps<Real> steps;
-  Arrival arrival;  ///< over the image's edge
-
-  /// Implicit: who remembers steps alone takes it that nothing came in.
-  Walk(const WalkSteps<Real>& s, const Arrival& a = {}) : steps(s), arrival(a) {}
-};
-
 /// What past frames' steps were likely like, if this frame's is all that is known: between it and the mean of a
 /// fraction of a pixel that is anything, 1/3. An axis along which nothing moves stays so.
 template <class Real>
@@ -93,71 +81,95 @@ struct LikelySteps {
   }
 };
 
-/// d^2T of a history that dies at the rate u > 0: exact for whole T >= 0, linear between, 0 from kLongAgo on.
+/// What a history of a pixel remembers.
 template <class Real>
-Real survival(Real death, float frames) {
-  if (frames >= Arrival::kLongAgo) return 0;
-  const int whole = static_cast<int>(frames);
-  const Real kept = 1 / (1 + death);
-  Real result = 1 - (frames - whole) * (1 - kept), power = kept;
-  for (int bits = whole; bits > 0; bits /= 2, power *= power)
-    if (bits % 2) result *= power;
-  return result;
-}
-
-/// Shares of a pixel's noise that stem from the image's edge.
-template <class Real>
-struct EdgeShares {
-  Real corner = 0;    ///< a corner, where nothing steps: one value
-  Real x = 0, y = 0;  ///< the left or right edge, where steps are up and down; the upper or lower one
-
-  Real all() const { return corner + x + y; }
+struct Remembered {
+  Real weight, ageSum;  ///< W, A
+  Real factor;          ///< d of the frame that comes
 };
 
-/// What reached one edge after the other is a corner's since the later of the two. lost: l of both axes; still: C_still
-/// over the pixel's power sum.
+/// u of what dies to the factor d a frame, in [1e-12, 1e6].
 template <class Real>
-EdgeShares<Real> edgeShares(const Arrival& arrival, const WalkSteps<Real>& lost, Real death, Real still) {
-  if (arrival.isLongAgo()) return {};
-  const Real x = survival(death, arrival.x), y = survival(death, arrival.y);
-  const auto share = [&](Real survived, Real l) { return still * std::max(Real(0), survived) * death / (death + l); };
-  const Real corner = std::min(Real(1), share(std::min(x, y), Real(0)));  // [ledger share]
-  const Real inX = std::min(1 - corner, share(x - y, lost.y));
-  return {corner, inX, std::min(1 - corner - inX, share(y - x, lost.x))};
+Real deathRate(Real factor) {
+  return factor > 0 ? std::clamp(1 / (factor * factor) - 1, Real(1e-12), Real(1e6)) : Real(1e6);
 }
 
-/// C_still. weight: w / n W; death: u > 0.
+/// u of a history that has settled at its mean age, in [1e-12, 1e6].
 template <class Real>
-Real stillNoise(Real weight, Real death) {
-  return weight / (1 + 1 / std::sqrt(1 + death));  // [ledger still]
+Real deathRateOfAge(Real meanAge) {
+  return meanAge > 0 ? deathRate(meanAge / (meanAge + 1)) : Real(1e6);
 }
 
-/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; walk: of the frames before; death: u > 0;
-/// freshShare: F in [0, 1]; still: C_still over the taps' power sum.
+/// u of a history of which nothing is known but its age: mostly its decay's, and its age's while it still grows and
+/// remembers less than its decay lets it.
 template <class Real>
-Real tapLikeness(const TapPairs& p, const Walk<Real>& walk, Real death, Real freshShare, Real still) {
-  const Real sx = walk.steps.x, sy = walk.steps.y, all = p.all();
-  const Real aloneX = walkCorrelation(death, sx), aloneY = walkCorrelation(death, sy);
-  const WalkSteps<Real> lost{sx * (1 - aloneX), sy * (1 - aloneY)};
-  const Real x = walkCorrelation(death + lost.y, sx * (1 - lost.y));  // [ledger plane], both divided by 1 - l
-  const Real y = walkCorrelation(death + lost.x, sy * (1 - lost.x));
+Real deathRate(const Remembered<Real>& h) {
+  const Real byAge = h.weight > 0 ? deathRateOfAge(h.ageSum / h.weight) : Real(1e6);
+  return Real(0.4) * byAge + Real(0.6) * deathRate(h.factor);  // [ledger death]
+}
+
+/// What of a history's noise is older than a frame, had every pixel as many samples in every frame.
+template <class Real>
+struct OlderNoise {
+  Real share = 0;   ///< O in [0, 1)
+  Real common = 0;  ///< q S: of that, sum of b_k b_l times the correlations of different taps
+};
+
+/// Noise of a pixel's taps that stems from the image's edge, as shares of all of it.
+template <class Real>
+struct EdgeNoise {
+  Real share = 0;   ///< E
+  Real common = 0;  ///< of that, sum of b_k b_l times the correlations of different taps
+};
+
+/// Of a walk that has made these steps for ever.
+template <class Real>
+OlderNoise<Real> settledNoise(const TapPairs& p, const WalkSteps<Real>& s, Real death) {
+  const Real lostX = s.x * (1 - walkCorrelation(death, s.x)), lostY = s.y * (1 - walkCorrelation(death, s.y));
+  const Real x = walkCorrelation(death + lostY, s.x * (1 - lostY));  // [ledger plane], both divided by 1 - l
+  const Real y = walkCorrelation(death + lostX, s.y * (1 - lostX));
   const Real common = p.row * x + p.column * y + p.diagonal * x * y;
-  const EdgeShares<Real> edge = edgeShares(walk.arrival, lost, death, still);
-  const Real older = std::max(Real(0), 1 - freshShare - edge.all()) * (1 + death) / (1 - all + common);  // o
-  const Real alike = std::min(Real(3), older + Real(0.2) * std::max(Real(0), older - 1));
-  const Real onEdge = edge.corner * all + edge.x * (p.row + (p.column + p.diagonal) * aloneY) +
-                      edge.y * (p.column + (p.row + p.diagonal) * aloneX);
-  return std::min(Real(1), (common * alike + onEdge) / all);  // [ledger alike]
+  const Real share = (1 - p.all() + common) / (1 + death);  // [ledger settled]
+  return {share, common / share};
 }
 
-/// u of a history that keeps d of its weight a frame and has the age sum A and weight W: mostly its decay's, and its
-/// age's while it still grows and remembers less than its decay lets it. In [1e-12, 1e6].
+/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; freshShare: F in [0, 1].
 template <class Real>
-Real deathRate(Real ageSum, Real weight, Real factor) {
-  const auto rate = [](Real inverseSurvival) { return inverseSurvival * inverseSurvival - 1; };
-  const Real byAge = ageSum > 0 ? rate((ageSum + weight) / ageSum) : Real(1e7);
-  const Real byDecay = factor > 0 ? rate(1 / factor) : Real(1e7);
-  return std::clamp(Real(0.4) * byAge + Real(0.6) * byDecay, Real(1e-12), Real(1e6));  // [ledger death]
+Real tapLikeness(const TapPairs& p, const OlderNoise<Real>& settled, Real freshShare, const EdgeNoise<Real>& edge) {
+  const Real older = std::max(Real(0), 1 - freshShare - edge.share);  // o
+  const Real counted = std::min(3 * settled.share, older + Real(0.2) * std::max(Real(0), older - settled.share));
+  return std::min(Real(1), (settled.common * counted + edge.common) / p.all());  // [ledger alike]
+}
+
+/// w^2 / n of a frame of n samples; 0 where it has none.
+template <class Real>
+Real freshNoise(const Policy& policy, Real n) {
+  const Real w = freshWeight(policy, n);
+  return n > 0 ? w * w / n : Real(0);
+}
+
+/// What a pixel's noise has walked through, from its steps alone: they are taken for those of all frames, this frame's
+/// samples for the last one's, and nothing came in over an edge. Also what any knowledge of past walks must answer.
+template <class Real>
+struct SettledWalk {
+  WalkSteps<Real> steps;
+
+  /// w^2 / n of the last frame. n: of the frame that comes.
+  Real freshNoise(const Policy& policy, Real n) const { return twohistory::freshNoise(policy, n); }
+  OlderNoise<Real> older(const TapPairs& p, const Remembered<Real>& h) const {
+    return settledNoise(p, steps, deathRate(h));
+  }
+  /// perNoise: w / (n C).
+  EdgeNoise<Real> edge(const TapPairs&, const Remembered<Real>&, Real /*perNoise*/) const { return {}; }
+};
+
+template <class Real>
+SettledWalk<Real> walkOf(const WalkSteps<Real>& steps) {
+  return {steps};
+}
+template <class Walk>
+const Walk& walkOf(const Walk& walk) {
+  return walk;
 }
 
 }  // namespace twohistory

@@ -22,44 +22,48 @@ struct Axis {
 
 }  // namespace
 
+TileMotion tileMotion(core::In<Taps> taps, core::ivec2 first, core::ivec2 end) {
+  Axis column, row;
+  float count = 0;
+  for (int y = first.y; y < end.y; y += kStride)
+    for (int x = first.x; x < end.x; x += kStride) {
+      const Taps& t = taps(x, y);
+      if (!t.valid()) continue;
+      const TapPairs pairs = pairsOf(t, taps.width);
+      const std::int32_t from = t.pixel[strongest(t)];
+      column.add(pairs.alongRow(), from % taps.width - x), row.add(pairs.alongColumn(), from / taps.width - y);
+      count += 1;
+    }
+  if (!(count > 0)) return {};
+  const core::vec2 middle = 0.5f * core::vec2(first + end - 1), moved(column.moved, row.moved);
+  const core::vec2 last(taps.width - 1, taps.height - 1);
+  return {false, {column.mean(), row.mean()}, glm::clamp(middle + moved / count, core::vec2(0), last)};
+}
+
 StepTiles::StepTiles(int width, int height)
     : width_(width),
       height_(height),
       now_((width + kSide - 1) / kSide, (height + kSide - 1) / kSide, Tile{}),
       before_(now_) {}
 
-StepTiles::Tile StepTiles::mixedAt(int x, int y) const {
-  const TilePlace p(x, y, kSide, now_.width(), now_.height());
+StepTiles::Tile StepTiles::mixedAt(core::vec2 position) const {
+  const TilePlace p(position.x, position.y, kSide, now_.width(), now_.height());
   const Tile &a = now_(p.i0, p.j0), &b = now_(p.i1, p.j0), &c = now_(p.i0, p.j1), &d = now_(p.i1, p.j1);
   return {{p.mix(a.sum.x, b.sum.x, c.sum.x, d.sum.x), p.mix(a.sum.y, b.sum.y, c.sum.y, d.sum.y)},
           p.mix(a.weight, b.weight, c.weight, d.weight)};
 }
 
 WalkSteps<float> StepTiles::at(std::int32_t pixel) const {
-  const Tile tile = mixedAt(pixel % width_, pixel / width_);
+  const Tile tile = mixedAt({pixel % width_, pixel / width_});
   if (!(tile.weight > 0)) return {0, 0};
   const float one = 1 / tile.weight;
   return {one * tile.sum.x, one * tile.sum.y};
 }
 
-StepTiles::Tile StepTiles::next(core::In<Taps> taps, int x0, int y0, int x1, int y1) const {
-  Axis column, row;
-  float count = 0;
-  for (int y = y0; y < y1; y += kStride)
-    for (int x = x0; x < x1; x += kStride) {
-      const Taps& t = taps(x, y);
-      if (!t.valid()) continue;
-      const TapPairs pairs = pairsOf(t, width_);
-      const std::int32_t from = t.pixel[strongest(t)];
-      column.add(pairs.alongRow(), from % width_ - x), row.add(pairs.alongColumn(), from / width_ - y);
-      count += 1;
-    }
-  if (!(count > 0)) return {};
-  const auto cameFrom = [&](int middle, float moved, int size) {
-    return std::clamp(middle + static_cast<int>(std::lround(moved / count)), 0, size - 1);
-  };
-  const Tile old = mixedAt(cameFrom((x0 + x1) / 2, column.moved, width_), cameFrom((y0 + y1) / 2, row.moved, height_));
-  return {{kKept * old.sum.x + column.mean(), kKept * old.sum.y + row.mean()},
+StepTiles::Tile StepTiles::next(const TileMotion& motion) const {
+  if (motion.isNew) return {};
+  const Tile old = mixedAt(motion.from);
+  return {{kKept * old.sum.x + motion.steps.x, kKept * old.sum.y + motion.steps.y},
           kKept * old.weight + 1};  // [ledger step]
 }
 
@@ -68,7 +72,10 @@ void StepTiles::update(core::In<Taps> taps) {
   CHECK_EQ(taps.height, height_);
   core::forEachTile(
       width_, height_,
-      [&](int x0, int y0, int x1, int y1) { before_(x0 / kSide, y0 / kSide) = next(taps, x0, y0, x1, y1); }, kSide);
+      [&](int x0, int y0, int x1, int y1) {
+        before_(x0 / kSide, y0 / kSide) = next(tileMotion(taps, {x0, y0}, {x1, y1}));
+      },
+      kSide);
   std::swap(now_, before_);
 }
 

@@ -13,8 +13,18 @@
 
 namespace twohistory {
 
-/// Past steps of one image. Where nothing is known yet they are 0: taps of a first motion are independent. Every fourth
-/// pixel of a row and column is looked at: what is thinner and moves over what stands seems to have just begun.
+/// What a frame's taps do to a tile of pixels.
+struct TileMotion {
+  bool isNew = true;             ///< nothing of it was in the last frame; the rest then means nothing
+  WalkSteps<float> steps{0, 0};  ///< s
+  core::vec2 from{0};            ///< where its middle was, pixels
+};
+
+/// Every fourth pixel of a row and column of [first, end) is looked at.
+TileMotion tileMotion(core::In<Taps> taps, core::ivec2 first, core::ivec2 end);
+
+/// Past steps of one image. Where nothing is known yet they are 0: taps of a first motion are independent. What is
+/// thinner than tileMotion sees and moves over what stands seems to have just begun.
 class StepTiles {
  public:
   static constexpr int kSide = 16;  ///< pixels
@@ -37,8 +47,8 @@ class StepTiles {
     WalkSteps<float> sum{0, 0};  ///< W s_past: sums are what mixes
     float weight = 0;            ///< W
   };
-  Tile mixedAt(int x, int y) const;
-  Tile next(core::In<Taps> taps, int x0, int y0, int x1, int y1) const;
+  Tile mixedAt(core::vec2 position) const;
+  Tile next(const TileMotion& motion) const;
 
   int width_ = 0, height_ = 0;
   core::Image<Tile> now_, before_;  ///< before_ is where the next frame is written

@@ -136,7 +136,7 @@ struct Course {
         now[3].data()[i] = advanced(guessed);
         now[4].data()[i] = advanced(stepped);
       }
-      walks.update(taps[f]);
+      walks.update(taps[f], counts[f]);
       steps.update(taps[f]);
       std::swap(ledgers, now);
     }

@@ -1,0 +1,67 @@
+// How much of a pixel's noise stems from the image's edge, where nothing steps in from beyond, and how alike that is.
+// Of what reached the edge T frames ago (arrivals.h) and dies at the rate u = 1 / d^2 - 1
+//
+//   [ledger share]  E_x = d^2T_x C_still / C u / (u + l_y) at the left or right edge, where walks go up and down alone
+//   [ledger still]  C_still = w / n W / (1 + d), the power sum of a history that has never stepped
+//
+// is left. What lies in a row is then one value, in a column it is as alike as along the edge; and the same for the
+// upper and lower edge. Derivation: docs/history.md.
+#pragma once
+
+#include "twohistory/arrivals.h"
+#include "twohistory/mixing.h"
+
+namespace twohistory {
+
+/// d^2T of a history that dies at the rate u > 0: exact for whole T >= 0, linear between, 0 from kLongAgo on.
+template <class Real>
+Real survival(Real death, float frames) {
+  if (frames >= Arrival::kLongAgo) return 0;
+  const int whole = static_cast<int>(frames);
+  const Real kept = 1 / (1 + death);
+  Real result = 1 - (frames - whole) * (1 - kept), power = kept;
+  for (int bits = whole; bits > 0; bits /= 2, power *= power)
+    if (bits % 2) result *= power;
+  return result;
+}
+
+/// Shares of a pixel's noise that stem from the image's edge.
+template <class Real>
+struct EdgeShares {
+  Real corner = 0;    ///< a corner, where nothing steps: one value
+  Real x = 0, y = 0;  ///< the left or right edge, where steps are up and down; the upper or lower one
+
+  Real all() const { return corner + x + y; }
+};
+
+/// What reached one edge after the other is a corner's since the later of the two. lost: l of both axes; still: C_still
+/// over the pixel's power sum.
+template <class Real>
+EdgeShares<Real> edgeShares(const Arrival& arrival, const WalkSteps<Real>& lost, Real death, Real still) {
+  if (arrival.isLongAgo()) return {};
+  const Real x = survival(death, arrival.x), y = survival(death, arrival.y);
+  const auto share = [&](Real survived, Real l) { return still * std::max(Real(0), survived) * death / (death + l); };
+  const Real corner = std::min(Real(1), share(std::min(x, y), Real(0)));  // [ledger share]
+  const Real inX = std::min(1 - corner, share(x - y, lost.y));
+  return {corner, inX, std::min(1 - corner - inX, share(y - x, lost.x))};
+}
+
+/// C_still. weight: w / n W; death: u > 0.
+template <class Real>
+Real stillNoise(Real weight, Real death) {
+  return weight / (1 + 1 / std::sqrt(1 + death));  // [ledger still]
+}
+
+/// The pixel's whole edge noise. perNoise: w / (n C).
+template <class Real>
+EdgeNoise<Real> edgeNoise(const TapPairs& p, const Arrival& arrival, const WalkSteps<Real>& steps,
+                          const Remembered<Real>& h, Real perNoise) {
+  const Real death = deathRate(h.factor);
+  const Real aloneX = walkCorrelation(death, steps.x), aloneY = walkCorrelation(death, steps.y);
+  const EdgeShares<Real> edge = edgeShares(arrival, {steps.x * (1 - aloneX), steps.y * (1 - aloneY)}, death,
+                                           stillNoise(h.weight * perNoise, death));
+  return {edge.all(), edge.corner * p.all() + edge.x * (p.row + (p.column + p.diagonal) * aloneY) +
+                          edge.y * (p.column + (p.row + p.diagonal) * aloneX)};
+}
+
+}  // namespace twohistory

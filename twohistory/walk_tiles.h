@@ -1,0 +1,77 @@
+// The noise that a history of uniform samples would have where the taps of past frames stepped as they did: what makes
+// the noise of neighbours alike (mixing.h), without waiting for it to settle.
+//
+// Beside every tile of pixels the covariances R_ij of pixels i, j apart are walked on, frame by frame, for a ladder of
+// death rates u, carried along with the image:
+//
+//   [ledger reference]  R <- D K_x K_y R, then R_00 + 1;  D = 1 / (1 + u),  K R_n = s/2 R_(n-1) + (1 - s) R_n + s/2
+//   R_(n+1) [ledger older]      O = 1 - 1 / R_00,  q_ij = R_ij / (R_00 - 1): what is older than a frame, and how alike
+//   it is
+//
+// R reaches as far as kReach pixels; beyond, it falls as between its last two. A pixel that is younger than its tile
+// has a shorter walk: [ledger young]  u -> u rate(A / W) / rate(mean age of the reference), rate(a) = (1 + 1/a)^2 - 1.
+#pragma once
+
+#include "core/image.h"
+#include "twohistory/mixing.h"
+#include "twohistory/steps.h"
+
+namespace twohistory {
+
+inline constexpr int kReferenceRates = 4;  ///< u = 1, 1/4, 1/16, 1/64: decays of .71, .89, .97, .99; others lie between
+
+/// What a reference history that dies at one rate says of pixels that lie next to each other.
+struct ReferenceNoise {
+  float row = 0, column = 0, diagonal = 0;  ///< q
+  float share = 0;                          ///< O
+  float meanAge = 0;                        ///< of the history, in frames
+};
+
+/// References at a pixel, between the middles of four tiles. Points into WalkTiles until its next update.
+class ReferenceWalk {
+ public:
+  using Rates = std::array<ReferenceNoise, kReferenceRates>;
+  std::array<const Rates*, 4> tile;
+  std::array<float, 4> part;  ///< of a tile, with sum 1
+
+  OlderNoise<float> older(const TapPairs& pairs, const Remembered<float>& history) const;
+
+ private:
+  /// place: on the ladder, in [0, kReferenceRates - 1].
+  ReferenceNoise between(float place) const;
+};
+
+/// Every fourth pixel of a tile's row and column is looked at: what is thinner and moves over what stands seems still.
+class WalkTiles {
+ public:
+  static constexpr int kSide = StepTiles::kSide;  ///< pixels
+  static constexpr int kReach = 3;                ///< i, j < kReach
+
+  WalkTiles() = default;
+  WalkTiles(int width, int height);
+
+  /// At a pixel (row-major index) of the last frame.
+  ReferenceWalk at(std::int32_t pixel) const;
+
+  /// Adds a frame, after everything of that frame has been gathered. taps: width x height, without padding.
+  void update(core::In<Taps> taps);
+
+  std::size_t bytes() const { return now_.bytes() + before_.bytes() + rates_.bytes(); }
+
+ private:
+  using Lags = std::array<std::array<float, kReach>, kReach>;  ///< [j][i]
+  struct Tile {
+    std::array<Lags, kReferenceRates> r{};
+    float frames = 0;  ///< how long the tile has been in the image
+  };
+  Tile mixedAt(core::vec2 position) const;
+  Tile next(const TileMotion& motion) const;
+  static void step(Lags& r, const WalkSteps<float>& s, float kept);
+  static ReferenceWalk::Rates ratesOf(const Tile& tile);
+
+  int width_ = 0;
+  core::Image<Tile> now_, before_;  ///< before_ is where the next frame is written
+  core::Image<ReferenceWalk::Rates> rates_;
+};
+
+}  // namespace twohistory
