@@ -18,8 +18,7 @@ struct TilePlace {
 
  private:
   static float along(float i, int tile, int tiles, int& first, int& second) {
-    const float t = std::clamp((i + 0.5f) / static_cast<float>(tile) - 0.5f, 0.0f,
-                               static_cast<float>(tiles - 1));
+    const float t = std::clamp((i + 0.5f) / static_cast<float>(tile) - 0.5f, 0.0f, static_cast<float>(tiles - 1));
     first = static_cast<int>(t), second = std::min(first + 1, tiles - 1);
     return t - static_cast<float>(first);
   }
