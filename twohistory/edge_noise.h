@@ -1,11 +1,11 @@
 // How much of a pixel's noise stems from the image's edge, where nothing steps in from beyond, and how alike that is.
 // Of what reached the edge T frames ago (arrivals.h) and dies at the rate u = 1 / d^2 - 1
 //
-//   [ledger share]  E_x = d^2T_x C_still / C u / (u + l_y) at the left or right edge, where walks go up and down alone
+//   [ledger share]  E_x = d^2T_x C_still / C V_y at the left or right edge, where walks go up and down alone
 //   [ledger still]  C_still = w / n W / (1 + d), the power sum of a history that has never stepped
 //
-// is left. What lies in a row is then one value, in a column it is as alike as along the edge; and the same for the
-// upper and lower edge. Derivation: docs/history.md.
+// is left, V being what walking along the edge has made of it (walk_tiles.h). What lies in a row is then one value, in
+// a column it is as alike as along the edge; and the same for the upper and lower edge. Derivation: docs/history.md.
 #pragma once
 
 #include "twohistory/arrivals.h"
@@ -34,16 +34,24 @@ struct EdgeShares {
   Real all() const { return corner + x + y; }
 };
 
-/// What reached one edge after the other is a corner's since the later of the two. lost: l of both axes; still: C_still
-/// over the pixel's power sum.
+/// A walk along an edge, where noise has come to stand still across it.
 template <class Real>
-EdgeShares<Real> edgeShares(const Arrival& arrival, const WalkSteps<Real>& lost, Real death, Real still) {
+struct EdgeWalk {
+  Real noise = 0;  ///< V, over that of what never steps
+  Real alike = 0;  ///< rho, of neighbours along the edge
+};
+
+/// What reached one edge after the other is a corner's since the later of the two. row, column: of walks in x and in y
+/// alone; still: C_still over the pixel's power sum.
+template <class Real>
+EdgeShares<Real> edgeShares(const Arrival& arrival, const EdgeWalk<Real>& row, const EdgeWalk<Real>& column, Real death,
+                            Real still) {
   if (arrival.isLongAgo()) return {};
   const Real x = survival(death, arrival.x), y = survival(death, arrival.y);
-  const auto share = [&](Real survived, Real l) { return still * std::max(Real(0), survived) * death / (death + l); };
-  const Real corner = std::min(Real(1), share(std::min(x, y), Real(0)));  // [ledger share]
-  const Real inX = std::min(1 - corner, share(x - y, lost.y));
-  return {corner, inX, std::min(1 - corner - inX, share(y - x, lost.x))};
+  const auto share = [&](Real survived, Real noise) { return still * std::max(Real(0), survived) * noise; };
+  const Real corner = std::min(Real(1), share(std::min(x, y), Real(1)));  // [ledger share]
+  const Real inX = std::min(1 - corner, share(x - y, column.noise));
+  return {corner, inX, std::min(1 - corner - inX, share(y - x, row.noise))};
 }
 
 /// C_still. weight: w / n W; death: u > 0.
@@ -52,16 +60,13 @@ Real stillNoise(Real weight, Real death) {
   return weight / (1 + 1 / std::sqrt(1 + death));  // [ledger still]
 }
 
-/// The pixel's whole edge noise. perNoise: w / (n C).
+/// All of a pixel's edge noise. Parameters as of edgeShares.
 template <class Real>
-EdgeNoise<Real> edgeNoise(const TapPairs& p, const Arrival& arrival, const WalkSteps<Real>& steps,
-                          const Remembered<Real>& h, Real perNoise) {
-  const Real death = deathRate(h.factor);
-  const Real aloneX = walkCorrelation(death, steps.x), aloneY = walkCorrelation(death, steps.y);
-  const EdgeShares<Real> edge = edgeShares(arrival, {steps.x * (1 - aloneX), steps.y * (1 - aloneY)}, death,
-                                           stillNoise(h.weight * perNoise, death));
-  return {edge.all(), edge.corner * p.all() + edge.x * (p.row + (p.column + p.diagonal) * aloneY) +
-                          edge.y * (p.column + (p.row + p.diagonal) * aloneX)};
+EdgeNoise<Real> edgeNoise(const TapPairs& p, const Arrival& arrival, const EdgeWalk<Real>& row,
+                          const EdgeWalk<Real>& column, Real death, Real still) {
+  const EdgeShares<Real> edge = edgeShares(arrival, row, column, death, still);
+  return {edge.all(), edge.corner * p.all() + edge.x * (p.row + (p.column + p.diagonal) * column.alike) +
+                          edge.y * (p.column + (p.row + p.diagonal) * row.alike)};
 }
 
 }  // namespace twohistory

@@ -139,7 +139,7 @@ std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pai
 /// What the taps know [ledger taps]. Weights and age sums are sums, so they mix with b; power sums mix between b^2
 /// (independent taps) and b (one value), by how alike they are. The harmonic mean of two histories' likenesses keeps
 /// them a covariance matrix: 1 / (x_g + x_h) is positive semidefinite, and so is its product with another, term by
-/// term. steps(taps, pairs): the walk of the frames before, or its steps (WalkMemory, StepTiles, LikelySteps); width:
+/// term. steps(taps, pairs): the walk of the frames before, or its steps (WalkMemory, LikelySteps); width:
 /// of the image that the taps point into.
 template <int K, class Real, class Steps>
 Ledger<K, Real> mix(const TapSums<K, Real>& sums, const Taps& taps, int width, const Steps& steps,

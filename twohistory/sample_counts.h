@@ -1,6 +1,7 @@
 // The last frame's sample counts, a byte a pixel: how much of what a pixel's taps remember was fresh (mixing.h).
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 

@@ -1,12 +1,10 @@
 // What a pixel's noise has walked through, for predicted variances (mixing.h): the walk that a reference history makes
-// beside it, the last frame's sample counts, and when it came in over the image's edge, with the steps of past frames'
-// taps along that. Like histories all of them are carried along with the image.
+// beside it, the last frame's sample counts, and when it came in over the image's edge. Like histories all of them are
+// carried along with the image.
 #pragma once
 
 #include "twohistory/arrivals.h"
-#include "twohistory/edge_noise.h"
 #include "twohistory/sample_counts.h"
-#include "twohistory/steps.h"
 #include "twohistory/walk_tiles.h"
 
 namespace twohistory {
@@ -17,7 +15,6 @@ class RememberedWalk {
   ReferenceWalk reference;
   std::array<float, 4> b, counts;  ///< of the pixel's taps; a count of 0 where b is
   Arrival arrival;
-  WalkSteps<float> steps;  ///< of past frames, where something came in lately
 
   float freshNoise(const Policy& policy, float /*n*/) const {
     float sum = 0;
@@ -26,7 +23,7 @@ class RememberedWalk {
   }
   OlderNoise<float> older(const TapPairs& pairs, const Remembered<float>& h) const { return reference.older(pairs, h); }
   EdgeNoise<float> edge(const TapPairs& pairs, const Remembered<float>& h, float perNoise) const {
-    return arrival.isLongAgo() ? EdgeNoise<float>{} : edgeNoise(pairs, arrival, steps, h, perNoise);
+    return arrival.isLongAgo() ? EdgeNoise<float>{} : reference.edge(pairs, arrival, h, perNoise);
   }
 };
 
@@ -34,14 +31,13 @@ class WalkMemory {
  public:
   WalkMemory() = default;
   WalkMemory(int width, int height)
-      : width_(width), walks_(width, height), counts_(width, height), arrivals_(width, height), steps_(width, height) {}
+      : width_(width), walks_(width, height), counts_(width, height), arrivals_(width, height) {}
 
   /// taps: of the frame that comes, at least one with b > 0.
   RememberedWalk operator()(const Taps& taps, const TapPairs&) const {
     const std::int32_t pixel = taps.pixel[strongest(taps)];
-    RememberedWalk walk{walks_.at(pixel), taps.b, {}, arrivals_.at(taps, {pixel % width_, pixel / width_}), {0, 0}};
+    RememberedWalk walk{walks_.at(pixel), taps.b, {}, arrivals_.at(taps, {pixel % width_, pixel / width_})};
     for (int k = 0; k < 4; ++k) walk.counts[k] = taps.b[k] > 0 ? counts_.at(taps.pixel[k]) : 0.0f;
-    if (!walk.arrival.isLongAgo()) walk.steps = steps_.at(pixel);
     return walk;
   }
   /// Adds a frame, after everything of that frame has been gathered. taps, counts: width x height, without padding.
@@ -49,17 +45,15 @@ class WalkMemory {
     walks_.update(taps);
     counts_.update(counts);
     arrivals_.update(taps);
-    steps_.update(taps);
   }
 
-  std::size_t bytes() const { return walks_.bytes() + counts_.bytes() + arrivals_.bytes() + steps_.bytes(); }
+  std::size_t bytes() const { return walks_.bytes() + counts_.bytes() + arrivals_.bytes(); }
 
  private:
   int width_ = 0;
   WalkTiles walks_;
   SampleCounts counts_;
   ArrivalGrid arrivals_;
-  StepTiles steps_;
 };
 
 }  // namespace twohistory

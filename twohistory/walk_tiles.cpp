@@ -19,36 +19,55 @@ float roughLog2(float x) { return static_cast<float>(std::bit_cast<std::int32_t>
 
 float placeOf(float death) { return std::clamp(-0.5f * roughLog2(death), 0.0f, kLastPlace); }
 
-/// Mean age of a history that has kept d of its weight a frame, for so many frames.
-float meanAgeAfter(float frames, float d) {
-  const float lost = std::pow(d, frames);
-  return d / (1 - d) - (lost < 1 ? frames * lost / (1 - lost) : 0.0f);
+/// One frame's steps s along kReach covariances that lie `stride` apart, the first of them of no distance.
+void walk(float* r, int stride, float s) {
+  const float here = r[0], one = r[stride], two = r[2 * stride], beyond = one > two ? two * two / one : two;
+  r[0] = (1 - s) * here + s * one;
+  r[stride] = (1 - s) * one + 0.5f * s * (here + two);
+  r[2 * stride] = (1 - s) * two + 0.5f * s * (one + beyond);
 }
 
 }  // namespace
 
-ReferenceNoise ReferenceWalk::between(float place) const {
+template <class Add>
+void ReferenceWalk::between(float place, const Add& add) const {
   const int first = std::min(static_cast<int>(place), kReferenceRates - 2);
   const float second = place - static_cast<float>(first);
+  for (int t = 0; t < 4; ++t) {
+    add((*tile[t])[first], part[t] * (1 - second));
+    add((*tile[t])[first + 1], part[t] * second);
+  }
+}
+
+ReferenceNoise ReferenceWalk::neighbours(float place) const {
   ReferenceNoise sum;
-  const auto add = [&](const ReferenceNoise& n, float b) {
+  between(place, [&](const ReferenceNoise& n, float b) {
     sum.row += b * n.row, sum.column += b * n.column, sum.diagonal += b * n.diagonal;
     sum.share += b * n.share, sum.meanAge += b * n.meanAge;
-  };
-  for (int t = 0; t < 4; ++t)
-    add((*tile[t])[first], part[t] * (1 - second)), add((*tile[t])[first + 1], part[t] * second);
+  });
   return sum;
 }
 
 OlderNoise<float> ReferenceWalk::older(const TapPairs& pairs, const Remembered<float>& history) const {
   constexpr float kAsOld = 0.98f;  // ages this near the reference's are the same
   const float death = deathRate(history.factor), place = placeOf(death);
-  ReferenceNoise noise = between(place);
+  ReferenceNoise noise = neighbours(place);
   if (place > 0 && history.ageSum < kAsOld * noise.meanAge * history.weight) {
     const float younger = deathRateOfAge(history.ageSum / history.weight) / deathRateOfAge(noise.meanAge);
-    noise = between(placeOf(death * younger));  // [ledger young]
+    noise = neighbours(placeOf(death * younger));  // [ledger young]
   }
   return {noise.share, pairs.row * noise.row + pairs.column * noise.column + pairs.diagonal * noise.diagonal};
+}
+
+EdgeNoise<float> ReferenceWalk::edge(const TapPairs& pairs, const Arrival& arrival, const Remembered<float>& history,
+                                     float perNoise) const {
+  const float death = deathRate(history.factor);
+  EdgeWalk<float> row, column;
+  between(placeOf(death), [&](const ReferenceNoise& n, float b) {
+    row.noise += b * n.alongRow.noise, row.alike += b * n.alongRow.alike;
+    column.noise += b * n.alongColumn.noise, column.alike += b * n.alongColumn.alike;
+  });
+  return edgeNoise(pairs, arrival, row, column, death, stillNoise(history.weight * perNoise, death));
 }
 
 WalkTiles::WalkTiles(int width, int height)
@@ -68,49 +87,48 @@ WalkTiles::Tile WalkTiles::mixedAt(core::vec2 position) const {
   const TilePlace p(position.x, position.y, kSide, now_.width(), now_.height());
   const Tile &a = now_(p.i0, p.j0), &b = now_(p.i1, p.j0), &c = now_(p.i0, p.j1), &d = now_(p.i1, p.j1);
   Tile mixed;
-  for (int k = 0; k < kReferenceRates; ++k)
-    for (int j = 0; j < kReach; ++j)
-      for (int i = 0; i < kReach; ++i) mixed.r[k][j][i] = p.mix(a.r[k][j][i], b.r[k][j][i], c.r[k][j][i], d.r[k][j][i]);
+  for (int k = 0; k < kReferenceRates; ++k) {
+    const auto mix = [&](const auto& of) {
+      for (int i = 0; i < kReach; ++i)
+        of(mixed.lags[k])[i] = p.mix(of(a.lags[k])[i], of(b.lags[k])[i], of(c.lags[k])[i], of(d.lags[k])[i]);
+    };
+    for (int j = 0; j < kReach; ++j) mix([j](auto& lags) -> auto& { return lags.r[j]; });
+    mix([](auto& lags) -> auto& { return lags.alongRow; });
+    mix([](auto& lags) -> auto& { return lags.alongColumn; });
+  }
   mixed.frames = p.mix(a.frames, b.frames, c.frames, d.frames);
   return mixed;
 }
 
-/// One frame's steps along both axes; the rows first.
-void WalkTiles::step(Lags& r, const WalkSteps<float>& s, float kept) {
-  const auto stepped = [](float before, float here, float after, float step) {
-    return (1 - step) * here + 0.5f * step * (before + after);
-  };
-  const auto beyond = [](float last, float previous) { return previous > last ? last * last / previous : last; };
-  constexpr int kLast = kReach - 1;
-  Lags half;
-  for (int j = 0; j < kReach; ++j)
-    for (int i = 0; i < kReach; ++i)  // R_-1 = R_1
-      half[j][i] =
-          stepped(r[j][i > 0 ? i - 1 : 1], r[j][i], i < kLast ? r[j][i + 1] : beyond(r[j][i], r[j][i - 1]), s.x);
-  for (int j = 0; j < kReach; ++j)
-    for (int i = 0; i < kReach; ++i)
-      r[j][i] = kept * stepped(half[j > 0 ? j - 1 : 1][i], half[j][i],
-                               j < kLast ? half[j + 1][i] : beyond(half[j][i], half[j - 1][i]), s.y);
-  r[0][0] += 1;  // [ledger reference]
+void WalkTiles::step(Lags& lags, const WalkSteps<float>& s, float kept) {
+  for (Line& row : lags.r) walk(row.data(), 1, s.x);
+  for (int i = 0; i < kReach; ++i) walk(&lags.r[0][i], kReach, s.y);
+  walk(lags.alongRow.data(), 1, s.x);
+  walk(lags.alongColumn.data(), 1, s.y);
+  for (Line* line : {&lags.r[0], &lags.r[1], &lags.r[2], &lags.alongRow, &lags.alongColumn})
+    for (float& r : *line) r *= kept;
+  lags.r[0][0] += 1, lags.alongRow[0] += 1, lags.alongColumn[0] += 1;  // [ledger reference]
 }
 
 WalkTiles::Tile WalkTiles::next(const TileMotion& motion) const {
   Tile tile;
   if (!motion.isNew) tile = mixedAt(motion.from);
-  for (int k = 0; k < kReferenceRates; ++k) step(tile.r[k], motion.steps, 1 / (1 + rateAt(k)));
+  for (int k = 0; k < kReferenceRates; ++k) step(tile.lags[k], motion.steps, 1 / (1 + rateAt(k)));
   tile.frames = std::min(tile.frames + 1, 1e6f);
   return tile;
 }
 
-ReferenceWalk::Rates WalkTiles::ratesOf(const Tile& tile) {
-  ReferenceWalk::Rates rates;
-  for (int k = 0; k < kReferenceRates; ++k) {
-    const Lags& r = tile.r[k];
-    const float older = r[0][0] - 1, one = older > 1e-6f ? 1 / older : 0.0f;
-    rates[k] = {one * r[0][1], one * r[1][0], one * r[1][1], older / r[0][0],  // [ledger older]
-                meanAgeAfter(tile.frames, 1 / std::sqrt(1 + rateAt(k)))};
-  }
-  return rates;
+ReferenceNoise WalkTiles::noiseOf(const Lags& lags, float frames, float death) {
+  const auto& r = lags.r;
+  const float older = r[0][0] - 1, one = older > 1e-6f ? 1 / older : 0.0f;
+  const float d = 1 / std::sqrt(1 + death), left = std::pow(d, frames);
+  const float meanAge = d / (1 - d) - (left < 1 ? frames * left / (1 - left) : 0.0f);
+  const float still = (1 - left * left) * (1 + 1 / death);  // of what never steps
+  const auto along = [&](const Line& line) {
+    return EdgeWalk<float>{std::min(1.0f, line[0] / still), line[1] / line[0]};  // [ledger along]
+  };
+  return {one * r[0][1],           one * r[1][0],        one * r[1][1],          older / r[0][0],  // [ledger older]
+          std::max(0.0f, meanAge), along(lags.alongRow), along(lags.alongColumn)};
 }
 
 void WalkTiles::update(core::In<Taps> taps) {
@@ -122,7 +140,10 @@ void WalkTiles::update(core::In<Taps> taps) {
       },
       kSide);
   std::swap(now_, before_);
-  core::forEachPixel(now_.width(), now_.height(), [&](int i, int j) { rates_(i, j) = ratesOf(now_(i, j)); });
+  core::forEachPixel(now_.width(), now_.height(), [&](int i, int j) {
+    const Tile& tile = now_(i, j);
+    for (int k = 0; k < kReferenceRates; ++k) rates_(i, j)[k] = noiseOf(tile.lags[k], tile.frames, rateAt(k));
+  });
 }
 
 }  // namespace twohistory

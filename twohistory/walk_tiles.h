@@ -1,20 +1,23 @@
 // The noise that a history of uniform samples would have where the taps of past frames stepped as they did: what makes
 // the noise of neighbours alike (mixing.h), without waiting for it to settle.
 //
-// Beside every tile of pixels the covariances R_ij of pixels i, j apart are walked on, frame by frame, for a ladder of
-// death rates u, carried along with the image:
+// Beside every tile of pixels lies a reference: the covariances R_ij of pixels i, j apart are walked on, frame by
+// frame, for a ladder of death rates u, carried along with the image:
 //
 //   [ledger reference]  R <- D K_x K_y R, then R_00 + 1;  D = 1 / (1 + u),  K R_n = s/2 R_(n-1) + (1 - s) R_n + s/2
 //   R_(n+1) [ledger older]      O = 1 - 1 / R_00,  q_ij = R_ij / (R_00 - 1): what is older than a frame, and how alike
-//   it is
+//   it is [ledger along]      V = R_0 (1 - D) / (1 - D^T), rho = R_1 / R_0 of a walk along one axis alone, after T
+//   frames: its
+//                       noise over that of what never steps, and how alike it is, for the image's edge (edge_noise.h)
 //
 // R reaches as far as kReach pixels; beyond, it falls as between its last two. A pixel that is younger than its tile
 // has a shorter walk: [ledger young]  u -> u rate(A / W) / rate(mean age of the reference), rate(a) = (1 + 1/a)^2 - 1.
 #pragma once
 
 #include "core/image.h"
+#include "twohistory/edge_noise.h"
 #include "twohistory/mixing.h"
-#include "twohistory/steps.h"
+#include "twohistory/tile_motion.h"
 
 namespace twohistory {
 
@@ -22,9 +25,10 @@ inline constexpr int kReferenceRates = 4;  ///< u = 1, 1/4, 1/16, 1/64: decays o
 
 /// What a reference history that dies at one rate says of pixels that lie next to each other.
 struct ReferenceNoise {
-  float row = 0, column = 0, diagonal = 0;  ///< q
-  float share = 0;                          ///< O
-  float meanAge = 0;                        ///< of the history, in frames
+  float row = 0, column = 0, diagonal = 0;    ///< q
+  float share = 0;                            ///< O
+  float meanAge = 0;                          ///< of the history, in frames
+  EdgeWalk<float> alongRow{}, alongColumn{};  ///< of a walk in x or y alone
 };
 
 /// References at a pixel, between the middles of four tiles. Points into WalkTiles until its next update.
@@ -35,17 +39,20 @@ class ReferenceWalk {
   std::array<float, 4> part;  ///< of a tile, with sum 1
 
   OlderNoise<float> older(const TapPairs& pairs, const Remembered<float>& history) const;
+  EdgeNoise<float> edge(const TapPairs& pairs, const Arrival& arrival, const Remembered<float>& history,
+                        float perNoise) const;
 
  private:
-  /// place: on the ladder, in [0, kReferenceRates - 1].
-  ReferenceNoise between(float place) const;
+  /// Sum over the tiles and the two rates next to a place on the ladder, in [0, kReferenceRates - 1].
+  template <class Add>
+  void between(float place, const Add& add) const;
+  ReferenceNoise neighbours(float place) const;
 };
 
-/// Every fourth pixel of a tile's row and column is looked at: what is thinner and moves over what stands seems still.
 class WalkTiles {
  public:
-  static constexpr int kSide = StepTiles::kSide;  ///< pixels
-  static constexpr int kReach = 3;                ///< i, j < kReach
+  static constexpr int kSide = 16;  ///< pixels
+  static constexpr int kReach = 3;  ///< i, j < kReach
 
   WalkTiles() = default;
   WalkTiles(int width, int height);
@@ -59,15 +66,20 @@ class WalkTiles {
   std::size_t bytes() const { return now_.bytes() + before_.bytes() + rates_.bytes(); }
 
  private:
-  using Lags = std::array<std::array<float, kReach>, kReach>;  ///< [j][i]
+  using Line = std::array<float, kReach>;
+  /// Of one death rate.
+  struct Lags {
+    std::array<Line, kReach> r{};    ///< [j][i]
+    Line alongRow{}, alongColumn{};  ///< of walks in x or y alone
+  };
   struct Tile {
-    std::array<Lags, kReferenceRates> r{};
+    std::array<Lags, kReferenceRates> lags{};
     float frames = 0;  ///< how long the tile has been in the image
   };
   Tile mixedAt(core::vec2 position) const;
   Tile next(const TileMotion& motion) const;
-  static void step(Lags& r, const WalkSteps<float>& s, float kept);
-  static ReferenceWalk::Rates ratesOf(const Tile& tile);
+  static void step(Lags& lags, const WalkSteps<float>& s, float kept);
+  static ReferenceNoise noiseOf(const Lags& lags, float frames, float death);
 
   int width_ = 0;
   core::Image<Tile> now_, before_;  ///< before_ is where the next frame is written

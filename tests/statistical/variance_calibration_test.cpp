@@ -1,9 +1,8 @@
 // Predicted against true variance of histories and their blend, by Monte Carlo through the library's own accumulate():
-// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, motion that begins or
-// pauses and the margin from which the image comes in included, but for one beginning (1.3) and the first pixels beside
-// the edge (kBesideMost). The controls are power sums that mix with b^2, with b^1.5, by a guess of past steps, and by
-// steps without arrivals. Relative standard error of a ratio: below 0.6 % (means over some 1,000 pixels or more and 100
-// sequences), of a still difference below 1 %.
+// within 2 % for a still camera, within 0.8 .. 1.25 under bilinear motion whatever the counts, motion that begins, ends
+// or pauses and the margin from which the image comes in included. The controls are power sums that mix with b^2, with
+// b^1.5, by a guess of past steps, and by walks without arrivals. Relative standard error of a ratio: below 0.6 %
+// (means over some 1,000 pixels or more and 100 sequences), of a still difference below 1 %.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -92,7 +91,17 @@ void fillTaps(const Motion& m, int frame, float edgeReach, core::Image<Taps>& ta
 }
 
 using Ledgers = core::Image<Ledger<kHistories>>;
-/// By likeness with walks remembered, b^2, b^1.5, by likeness with guessed steps, with steps remembered alone.
+/// Control: walks are remembered, but not what came in over the edge.
+struct WithoutArrivals {
+  const twohistory::WalkMemory& walks;
+  twohistory::RememberedWalk operator()(const Taps& taps, const twohistory::TapPairs& pairs) const {
+    twohistory::RememberedWalk walk = walks(taps, pairs);
+    walk.arrival = {};
+    return walk;
+  }
+};
+
+/// By likeness with walks remembered, b^2, b^1.5, by likeness with guessed steps, with walks but no arrivals.
 constexpr int kRules = 5;
 
 /// Two controls: power sums that mix with b^power, as if taps were independent (2) or half alike (1.5).
@@ -116,7 +125,6 @@ struct Course {
     ledgers.fill(Ledgers(kWidth, kHeight));
     std::array<Ledgers, kRules> now = ledgers;
     twohistory::WalkMemory walks(kWidth, kHeight);
-    twohistory::StepTiles steps(kWidth, kHeight);
     for (int f = 0; f < kFrames; ++f) {
       taps.emplace_back(kWidth, kHeight), counts.emplace_back(kWidth, kHeight);
       if (f > 0) fillTaps(motion, f, edgeReach, taps.back());
@@ -125,7 +133,7 @@ struct Course {
         const Taps& t = taps[f].data()[i];
         const float n = counts[f].data()[i];
         const auto ours = twohistory::gather<kHistories, float>(t, ledgers[0], kPolicies, n, walks);
-        const auto stepped = twohistory::gather<kHistories, float>(t, ledgers[4], kPolicies, n, steps);
+        const auto inside = twohistory::gather<kHistories, float>(t, ledgers[4], kPolicies, n, WithoutArrivals{walks});
         const auto guessed = twohistory::gather<kHistories, float>(t, ledgers[3], kPolicies, n);
         const auto advanced = [&](const Ledger<kHistories>& l) {
           return advance(l, advanceOf(l, kPolicies, n, t.carried), n);
@@ -134,10 +142,9 @@ struct Course {
         now[1].data()[i] = advanced(gatherPower(t, ledgers[1], 2));
         now[2].data()[i] = advanced(gatherPower(t, ledgers[2], 1.5));
         now[3].data()[i] = advanced(guessed);
-        now[4].data()[i] = advanced(stepped);
+        now[4].data()[i] = advanced(inside);
       }
       walks.update(taps[f], counts[f]);
-      steps.update(taps[f]);
       std::swap(ledgers, now);
     }
   }
@@ -268,9 +275,6 @@ void print(const Motion& m, const Calibration& c) {
              c.difference[1]);
 }
 
-/// What the first pixels beside the edge keep to; all others keep to the bound.
-constexpr double kBesideMost = 1.45;
-
 Calibration expectWithin(const Motion& m, double low, double high, float edgeReach = 0) {
   const Calibration c = calibrate(m, edgeReach);
   print(m, c);
@@ -279,8 +283,7 @@ Calibration expectWithin(const Motion& m, double low, double high, float edgeRea
       const double ratio = c.ratio[0][k][r];
       if (std::isnan(ratio) && (r == 1 || r == 2) && m.counts != Counts::fovea) continue;
       EXPECT_GT(ratio, low) << m.name << ", " << kCombination[k] << ", region " << r;
-      EXPECT_LT(ratio, r == 4 && high > 1.1 ? kBesideMost : high)
-          << m.name << ", " << kCombination[k] << ", region " << r;
+      EXPECT_LT(ratio, high) << m.name << ", " << kCombination[k] << ", region " << r;
     }
   return c;
 }
@@ -318,17 +321,19 @@ TEST(PredictedVariance, OfMotionThatBeginsOrPausesIsWithinAQuarterWhereAGuessIsN
   expectWithin(since(4, "0.3, 0.3 since 4 frames", 0.3f), 0.8, 1.25);
   expectWithin(since(9, "0.3, 0.3 since 9 frames", 0.3f), 0.8, 1.25);
   expectWithin(since(16, "0.3, 0.3 since 16 frames", 0.3f), 0.8, 1.25);
-  // The worst of some forty beginnings, U .98 in the fovea: more alike than a settled walk (docs/results.md, 10).
-  expectWithin(since(12, "0.2, 0.2 since 12 frames", 0.2f), 0.8, 1.3);
+  expectWithin(since(12, "0.2, 0.2 since 12 frames", 0.2f), 0.8, 1.25);
   Motion pauses{"0.5, 0 in every other frame", vec2(0.5f, 0), 0, 0};
   pauses.way = Way::pauses;
   expectWithin(pauses, 0.8, 1.25);
+  Motion both{"0.5, 0.5 in every other frame", vec2(0.5f), 0, 0};  // the worst of a hundred (docs/results.md, 10)
+  both.way = Way::pauses;
+  expectWithin(both, 0.8, 1.25);
 }
-TEST(PredictedVariance, WhereTheImageComesInIsWithinAQuarterWhereStepsAloneClaimTooLittle) {
+TEST(PredictedVariance, WhereTheImageComesInIsWithinAQuarterWhereWalksAloneClaimTooLittle) {
   constexpr int kLongest = 5;                                                                             // U .98
-  const auto bySteps = [](const Motion& m) { return expectWithin(m, 0.8, 1.25).ratio[4][kLongest][3]; };  // control
-  EXPECT_GT(bySteps({"0.7, 0.7", vec2(0.7f), 0, 0}), 1.35);
-  EXPECT_GT(bySteps({"0.8, 0", vec2(0.8f, 0), 0, 0}), 1.25);
+  const auto byWalks = [](const Motion& m) { return expectWithin(m, 0.8, 1.25).ratio[4][kLongest][3]; };  // control
+  EXPECT_GT(byWalks({"0.7, 0.7", vec2(0.7f), 0, 0}), 1.35);
+  EXPECT_GT(byWalks({"0.8, 0", vec2(0.8f, 0), 0, 0}), 1.25);
   expectWithin({"-0.3, 0.6", vec2(-0.3f, 0.6f), 0, 0}, 0.8, 1.25);
   expectWithin({"0.7, 0.7, random counts", vec2(0.7f), 0, 0, Counts::random}, 0.8, 1.25);
   Motion begins{"0.5, 0.5 since 16 frames", vec2(0.5f), 0, 0};
