@@ -37,6 +37,7 @@ const std::vector<Sequence>& sequences() {
       {"never_seen", [](int x, int y, int) { return x > 50 && x < 75 && y > 20 && y < 40 ? 0 : 1; }},
       {"changing", [](int x, int y, int f) { return 1 + (x / 9 + y / 7 + f) % 3; }},
       {"moving", [](int, int, int) { return 1; }, {0.3f, -0.6f}},
+      {"zeros_moving", [](int x, int y, int f) { return (x + y + f) % 7 == 0 ? 0 : 4; }, {0.3f, -0.6f}},
       {"moving_fovea", [](int x, int y, int f) { return insideFovea(x - f, y) ? 8 : 1; }, {1, 0}},
       {"disocclusion", [](int, int, int) { return 2; }, {0, 0}, 9},
       {"bad_input", [](int, int, int) { return 2; }, {0, 0}, -1, 7},

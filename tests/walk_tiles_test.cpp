@@ -96,13 +96,26 @@ struct ThisFramesCounts : WalkMemory {
   Walk operator()(const Taps& taps, const TapPairs& pairs) const { return {WalkMemory::operator()(taps, pairs)}; }
 };
 
-/// The library's prediction well inside the image. Memory: WalkMemory, or a control.
+/// Whose walks are as long as their tile's, however young they are.
+struct AsOldAsTheTile : WalkMemory {
+  using WalkMemory::WalkMemory;
+  struct Walk : twohistory::RememberedWalk {
+    twohistory::OlderNoise<float> older(const TapPairs& p, const twohistory::Remembered<float>& h) const {
+      return RememberedWalk::older(p, {h.weight, 1e9f * h.weight, h.factor});
+    }
+  };
+  Walk operator()(const Taps& taps, const TapPairs& pairs) const { return {WalkMemory::operator()(taps, pairs)}; }
+};
+
+/// The library's prediction well inside the image. Memory: WalkMemory, or a control. hidden: frames after which all
+/// pixels lose their histories, as what comes out from behind something; the tiles know nothing of it.
 template <class Memory>
-double predictedVariance(const Course& course, const Policy& policy) {
+double predictedVariance(const Course& course, const Policy& policy, std::size_t hidden = 0) {
   const twohistory::Policies<1> policies{policy};
   core::Image<Ledger<1>> before(kSize, kSize), now = before;
   Memory memory(kSize, kSize);
   for (const Frame& frame : course) {
+    if (hidden > 0 && &frame == &course[hidden]) before = core::Image<Ledger<1>>(kSize, kSize);
     const core::Image<Taps> taps = tapsOf(frame.moved);
     for (int y = 0; y < kSize; ++y)
       for (int x = 0; x < kSize; ++x)
@@ -110,7 +123,7 @@ double predictedVariance(const Course& course, const Policy& policy) {
     memory.update(taps, core::Image<float>(kSize, kSize, frame.n));
     std::swap(before, now);
   }
-  return static_cast<double>(before(kSize - 8, kSize - 8).covariance(0, 0));
+  return static_cast<double>(before(kSize - 24, kSize - 24).covariance(0, 0));
 }
 
 /// Exact over predicted variance over many courses.
@@ -138,6 +151,8 @@ const std::vector<Policy> kDecays{{Weighting::frames, Forgetting::decay, 0.5},
                                   {Weighting::frames, Forgetting::decay, 0.8},
                                   {Weighting::frames, Forgetting::decay, 0.95},
                                   {Weighting::frames, Forgetting::decay, 0.98}};
+const std::vector<Policy> kLongDecays{{Weighting::frames, Forgetting::decay, 0.995},
+                                      {Weighting::frames, Forgetting::decay, 1}};
 
 TEST(ReferenceWalk, PredictsVariancesOfMotionThatBeginsKeepsOnAndEnds) {
   std::vector<Course> courses;
@@ -157,8 +172,12 @@ TEST(ReferenceWalk, PredictsVariancesOfMotionThatBeginsKeepsOnAndEnds) {
   const Range guessed = rangeOf<NoMemory>(courses, kDecays);  // control
   std::printf("exact over predicted: %.3f .. %.3f; by a guess of steps %.3f .. %.3f\n", ours.low, ours.high,
               guessed.low, guessed.high);
-  EXPECT_GT(ours.low, 0.96);
-  EXPECT_LT(ours.high, 1.04);
+  EXPECT_GT(ours.low, 0.93);
+  EXPECT_LT(ours.high, 1.05);
+  const Range longer = rangeOf<WalkMemory>(courses, kLongDecays);
+  std::printf("of longer memories: %.3f .. %.3f\n", longer.low, longer.high);
+  EXPECT_GT(longer.low, 0.88);
+  EXPECT_LT(longer.high, 1.12);
   EXPECT_LT(guessed.low, 0.7);
   EXPECT_GT(guessed.high, 1.1);
 }
@@ -187,6 +206,41 @@ TEST(ReferenceWalk, PredictsVariancesWhereCountsHaveChangedByTheLastFramesCounts
   EXPECT_LT(byThisFrames.low, 0.75);
 }
 
+TEST(ReferenceWalk, PredictsVariancesOfWhatHasJustComeOutFromBehindSomething) {
+  Range ours, control;
+  for (const vec2 moved : {vec2(0.1f), vec2(0.3f), vec2(0.5f, 0)})
+    for (const Policy& policy : {kDecays[2], kDecays[3], kLongDecays[1]})
+      for (const int since : {2, 4, 8, 20}) {
+        const Course course = courseOf(1, 39, 0, moved), seen(course.end() - since, course.end());
+        const std::size_t hidden = course.size() - seen.size();
+        const double exact = exactVariance(seen, policy);
+        ours.add(exact / predictedVariance<WalkMemory>(course, policy, hidden));
+        control.add(exact / predictedVariance<AsOldAsTheTile>(course, policy, hidden));
+      }
+  std::printf("exact over predicted: %.3f .. %.3f; with the tile's walk %.3f .. %.3f\n", ours.low, ours.high,
+              control.low, control.high);
+  EXPECT_GT(ours.low, 0.95);
+  EXPECT_LT(ours.high, 1.1);
+  EXPECT_LT(control.low, 0.85);
+}
+
+TEST(RememberedWalks, KnowTheCountsUnderEachTap) {
+  WalkMemory walks(kSize, kSize);
+  core::Image<float> counts(kSize, kSize);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) counts(x, y) = static_cast<float>((x + 5 * y) % 7);
+  walks.update(tapsOf(vec2(0)), counts);
+  const Taps taps = from(30, 20, {0.3f, 0.4f});
+  const auto walk = walks(taps, twohistory::pairsOf(taps, kSize));
+  float frames = 0, samples = 0;
+  for (int k = 0; k < 4; ++k) {
+    const float n = counts(taps.pixel[k] % kSize, taps.pixel[k] / kSize);
+    frames += n > 0 ? taps.b[k] / n : 0, samples += taps.b[k] * n;
+  }
+  EXPECT_NEAR(walk.freshNoise({Weighting::frames}, 9), frames, 1e-6f);
+  EXPECT_NEAR(walk.freshNoise({Weighting::samples}, 9), samples, 1e-6f);
+}
+
 TEST(RememberedWalks, ReachLedgersThroughAccumulate) {
   const twohistory::Policies<1> policies{kDecays[2]};
   core::Image<Ledger<1>> before(kSize, kSize), now = before;
@@ -201,7 +255,7 @@ TEST(RememberedWalks, ReachLedgersThroughAccumulate) {
     walks.update(taps, count);
     std::swap(before, now), std::swap(value, next);
   }
-  const auto variance = static_cast<double>(before(kSize - 8, kSize - 8).covariance(0, 0));
+  const auto variance = static_cast<double>(before(kSize - 24, kSize - 24).covariance(0, 0));
   EXPECT_EQ(variance, predictedVariance<WalkMemory>(course, kDecays[2]));
   EXPECT_NE(variance, predictedVariance<NoMemory>(course, kDecays[2]));  // control
 }
@@ -219,7 +273,7 @@ TEST(WalkTiles, KnowNothingInCommonBeforeAnythingMoved) {
   for (int f = 0; f < 9; ++f) walks.update(tapsOf(vec2(f % 3, 0)));
   EXPECT_GT(olderAt(walks, 20, 20).share, 0.8f);
   EXPECT_EQ(olderAt(walks, 20, 20).common, 0);
-  EXPECT_LT(static_cast<double>(walks.bytes()) / (kSize * kSize), 2.5);
+  EXPECT_LT(static_cast<double>(walks.bytes()) / (kSize * kSize), 3.1);
 }
 
 TEST(WalkTiles, MoveWithTheImageAndForgetWhatIsNew) {
@@ -254,6 +308,12 @@ TEST(WalkTiles, KnowWalksAlongTheEdge) {
   EXPECT_NEAR(noise, death / (death + 0.5f * (1 - rho)), 0.03f);
   EXPECT_NEAR(edge({0, 0.5f, 0}).common / (0.5f * noise), rho, 0.03f);
   EXPECT_EQ(edge({0.5f, 0, 0}).common, 0.5f * noise);  // what lies in a row is one value
+  WalkTiles turned(kSize, kSize);
+  for (int f = 0; f < 200; ++f) turned.update(tapsOf(vec2(0.5f, 0)));
+  const auto upper = turned.at(30 * kSize + 30)
+                         .edge({0.5f, 0, 0}, {twohistory::Arrival::kLongAgo, 0}, {20, 1e9f, kDecay}, (1 + kDecay) / 20);
+  EXPECT_NEAR(upper.share, noise, 1e-3f);
+  EXPECT_NEAR(upper.common, edge({0, 0.5f, 0}).common, 1e-3f);
 }
 
 TEST(TileMotion, IsNotSlowedByWhatStandsBesideWhatMoves) {
@@ -262,7 +322,7 @@ TEST(TileMotion, IsNotSlowedByWhatStandsBesideWhatMoves) {
   EXPECT_FALSE(motion.isNew);
   EXPECT_NEAR(motion.steps.x, 0.5f, 1e-6f);  // 2 f (1 - f)
   EXPECT_NEAR(motion.steps.y, 0.375f, 1e-6f);
-  EXPECT_NEAR(twohistory::tileMotion(taps, {32, 16}, {48, 32}).from.x, 39.5f - 2.5f, 1.0f);
+  EXPECT_NEAR(twohistory::tileMotion(taps, {32, 16}, {48, 32}).from.x, 39.5f - 2.5f, 1e-3f);
   EXPECT_EQ(twohistory::tileMotion(tapsOf(vec2(0)), {16, 16}, {32, 32}).from, vec2(23.5f));
   EXPECT_TRUE(twohistory::tileMotion(core::Image<Taps>(kSize, kSize), {0, 0}, {16, 16}).isNew);
 }
@@ -277,6 +337,10 @@ TEST(WalkTiles, KnowThatYoungerPixelsHaveWalkedLess) {
   EXPECT_LT(commonAt(4), 0.8f * commonAt(24));
   EXPECT_LT(commonAt(1), 0.8f * commonAt(4));
   EXPECT_GE(commonAt(0), 0);
+  const auto forgetsNothing = [&](float age) {
+    return walks.at(30 * kSize + 30).older({0.25f, 0.25f, 0.25f}, {1, age, 1.0f}).common;
+  };
+  EXPECT_LT(forgetsNothing(2), 0.8f * forgetsNothing(30));
 }
 
 TEST(WalkTiles, StayFiniteOverManyFramesOfAnyMotion) {
@@ -301,6 +365,9 @@ TEST(WalkTiles, StayFiniteOverManyFramesOfAnyMotion) {
       const auto older = walks.at(0).older({0.3f, 0.3f, 0.15f}, {1e6f, 1e12f, decay});
       EXPECT_TRUE(older.share >= 0 && older.share < 1) << decay << ": " << older.share;
       EXPECT_TRUE(older.common >= 0 && older.common <= 0.751f) << decay << ": " << older.common;
+      const auto edge = walks.at(0).edge({0.3f, 0.3f, 0.15f}, {3, 7}, {1e6f, 1e12f, decay}, 1e-6f);
+      EXPECT_TRUE(edge.share >= 0 && edge.share <= 1) << decay << ": " << edge.share;
+      EXPECT_TRUE(edge.common >= 0 && edge.common <= 0.751f) << decay << ": " << edge.common;
     }
   }
 }

@@ -1,5 +1,5 @@
 // How long ago each part of the image came in over its edge. Where it comes in slower than a pixel a frame the edge
-// keeps what it remembers (reprojection.h), and what has passed it is more alike than a walk makes it (mixing.h).
+// keeps what it remembers (reprojection.h), and what has passed it is more alike than a walk makes it (edge_noise.h).
 //
 //   [ledger arrival]  T <- 0 where the history lies beyond the edge by less than a pixel,  T + 1 at what came along
 //

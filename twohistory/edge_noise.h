@@ -41,32 +41,36 @@ struct EdgeWalk {
   Real alike = 0;  ///< rho, of neighbours along the edge
 };
 
-/// What reached one edge after the other is a corner's since the later of the two. row, column: of walks in x and in y
-/// alone; still: C_still over the pixel's power sum.
+/// Walks in x and in y alone.
 template <class Real>
-EdgeShares<Real> edgeShares(const Arrival& arrival, const EdgeWalk<Real>& row, const EdgeWalk<Real>& column, Real death,
-                            Real still) {
+struct EdgeWalks {
+  EdgeWalk<Real> row, column;
+};
+
+/// C_still. perWeight: w / n, or a multiple of it; death: u > 0.
+template <class Real>
+Real stillNoise(Real weight, Real perWeight, Real death) {
+  return weight * perWeight / (1 + 1 / std::sqrt(1 + death));  // [ledger still]
+}
+
+/// What reached one edge after the other is a corner's since the later of the two. still: C_still / C.
+template <class Real>
+EdgeShares<Real> edgeShares(const Arrival& arrival, const EdgeWalks<Real>& walks, Real death, Real still) {
   if (arrival.isLongAgo()) return {};
   const Real x = survival(death, arrival.x), y = survival(death, arrival.y);
   const auto share = [&](Real survived, Real noise) { return still * std::max(Real(0), survived) * noise; };
   const Real corner = std::min(Real(1), share(std::min(x, y), Real(1)));  // [ledger share]
-  const Real inX = std::min(1 - corner, share(x - y, column.noise));
-  return {corner, inX, std::min(1 - corner - inX, share(y - x, row.noise))};
-}
-
-/// C_still. weight: w / n W; death: u > 0.
-template <class Real>
-Real stillNoise(Real weight, Real death) {
-  return weight / (1 + 1 / std::sqrt(1 + death));  // [ledger still]
+  const Real inX = std::min(1 - corner, share(x - y, walks.column.noise));
+  return {corner, inX, std::min(1 - corner - inX, share(y - x, walks.row.noise))};
 }
 
 /// All of a pixel's edge noise. Parameters as of edgeShares.
 template <class Real>
-EdgeNoise<Real> edgeNoise(const TapPairs& p, const Arrival& arrival, const EdgeWalk<Real>& row,
-                          const EdgeWalk<Real>& column, Real death, Real still) {
-  const EdgeShares<Real> edge = edgeShares(arrival, row, column, death, still);
-  return {edge.all(), edge.corner * p.all() + edge.x * (p.row + (p.column + p.diagonal) * column.alike) +
-                          edge.y * (p.column + (p.row + p.diagonal) * row.alike)};
+EdgeNoise<Real> edgeNoise(const TapPairs& p, const Arrival& arrival, const EdgeWalks<Real>& walks, Real death,
+                          Real still) {
+  const EdgeShares<Real> edge = edgeShares(arrival, walks, death, still);
+  return {edge.all(), edge.corner * p.all() + edge.x * (p.row + (p.column + p.diagonal) * walks.column.alike) +
+                          edge.y * (p.column + (p.row + p.diagonal) * walks.row.alike)};
 }
 
 }  // namespace twohistory

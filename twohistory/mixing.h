@@ -15,7 +15,7 @@
 // In a pixel whose counts change the share F of the last frame's samples is another than 1 - O, and what is older than
 // the rest is more alike:
 //
-//   [ledger alike]  r = min(1, q min(3 O, o + 0.2 max(0, o - O)) + edge),  o = 1 - F - E
+//   [ledger alike]  r = min(1 - F, q min(3 O, o + 0.2 max(0, o - O)) + edge),  o = 1 - F - E
 //
 // E: the share that walked in from the image's edge, of which taps have "edge" in common (edge_noise.h).
 // Derivation, and how exact this is: docs/history.md.
@@ -133,12 +133,13 @@ OlderNoise<Real> settledNoise(const TapPairs& p, const WalkSteps<Real>& s, Real 
   return {share, common / share};
 }
 
-/// Correlation of the noise of a pixel's taps, in [0, 1]. p: not all zero; freshShare: F in [0, 1].
+/// Correlation of the noise of a pixel's taps, in [0, 1 - F]. p: not all zero; reference: of uniform counts;
+/// freshShare: F in [0, 1].
 template <class Real>
-Real tapLikeness(const TapPairs& p, const OlderNoise<Real>& settled, Real freshShare, const EdgeNoise<Real>& edge) {
-  const Real older = std::max(Real(0), 1 - freshShare - edge.share);  // o
-  const Real counted = std::min(3 * settled.share, older + Real(0.2) * std::max(Real(0), older - settled.share));
-  return std::min(Real(1), (settled.common * counted + edge.common) / p.all());  // [ledger alike]
+Real tapLikeness(const TapPairs& p, const OlderNoise<Real>& reference, Real freshShare, const EdgeNoise<Real>& edge) {
+  const Real left = 1 - freshShare, older = std::max(Real(0), left - edge.share);  // o
+  const Real counted = std::min(3 * reference.share, older + Real(0.2) * std::max(Real(0), older - reference.share));
+  return std::min(left, (reference.common * counted + edge.common) / p.all());  // [ledger alike]
 }
 
 /// w^2 / n of a frame of n samples; 0 where it has none.
@@ -159,7 +160,7 @@ struct SettledWalk {
   OlderNoise<Real> older(const TapPairs& p, const Remembered<Real>& h) const {
     return settledNoise(p, steps, deathRate(h));
   }
-  /// perNoise: w / (n C).
+  /// perNoise: w / (n C); 1 / W where n = 0.
   EdgeNoise<Real> edge(const TapPairs&, const Remembered<Real>&, Real /*perNoise*/) const { return {}; }
 };
 

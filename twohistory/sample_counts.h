@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "core/check.h"
 #include "core/image.h"
 #include "core/parallel.h"
 
@@ -37,6 +38,8 @@ class SampleCounts {
   /// Of a pixel (row-major index) in the last frame; 0 before the first.
   float at(std::int32_t pixel) const { return count_code::unpack(codes_.data()[pixel]); }
   void update(core::In<float> counts) {
+    CHECK_EQ(counts.width, codes_.width());
+    CHECK_EQ(counts.height, codes_.height());
     core::forEachPixel(codes_.width(), codes_.height(),
                        [&](int x, int y) { codes_(x, y) = count_code::pack(counts(x, y)); });
   }

@@ -9,7 +9,7 @@ constexpr int kStride = 4;  // pixels between those that are looked at
 struct Axis {
   float sum = 0, squares = 0, moved = 0;
 
-  void add(float step, int pixels) { sum += step, squares += step * step, moved += static_cast<float>(pixels); }
+  void add(float step, float pixels) { sum += step, squares += step * step, moved += pixels; }
   /// Mean, each weighted by itself.
   float mean() const { return sum > 0 ? squares / sum : 0.0f; }
 };
@@ -24,8 +24,9 @@ TileMotion tileMotion(core::In<Taps> taps, core::ivec2 first, core::ivec2 end) {
       const Taps& t = taps(x, y);
       if (!t.valid()) continue;
       const TapPairs pairs = pairsOf(t, taps.width);
-      const std::int32_t from = t.pixel[strongest(t)];
-      column.add(pairs.alongRow(), from % taps.width - x), row.add(pairs.alongColumn(), from / taps.width - y);
+      core::vec2 moved(-x, -y);
+      for (int k = 0; k < 4; ++k) moved += t.b[k] * core::vec2(t.pixel[k] % taps.width, t.pixel[k] / taps.width);
+      column.add(pairs.alongRow(), moved.x), row.add(pairs.alongColumn(), moved.y);
       count += 1;
     }
   if (!(count > 0)) return {};

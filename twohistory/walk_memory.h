@@ -13,7 +13,7 @@ namespace twohistory {
 class RememberedWalk {
  public:
   ReferenceWalk reference;
-  std::array<float, 4> b, counts;  ///< of the pixel's taps; a count of 0 where b is
+  std::array<float, 4> b, counts;  ///< of the pixel's taps; 0 where b is 0
   Arrival arrival;
 
   float freshNoise(const Policy& policy, float /*n*/) const {
@@ -42,8 +42,8 @@ class WalkMemory {
   }
   /// Adds a frame, after everything of that frame has been gathered. taps, counts: width x height, without padding.
   void update(core::In<Taps> taps, core::In<float> counts) {
-    walks_.update(taps);
     counts_.update(counts);
+    walks_.update(taps);
     arrivals_.update(taps);
   }
 

@@ -11,13 +11,16 @@ namespace {
 
 constexpr float kLastPlace = kReferenceRates - 1;
 
+constexpr int kOctaves = 2;      // between rates
+constexpr float kAsOld = 0.98f;  // of the reference's mean age: as old as it
+
 /// u at a place of the ladder.
-float rateAt(int place) { return std::ldexp(1.0f, -2 * place); }
+float rateAt(int place) { return std::ldexp(1.0f, -kOctaves * place); }
 
 /// log2 of x > 0, linear between powers of two: at most .09 off.
 float roughLog2(float x) { return static_cast<float>(std::bit_cast<std::int32_t>(x) - 0x3f800000) * 0x1p-23f; }
 
-float placeOf(float death) { return std::clamp(-0.5f * roughLog2(death), 0.0f, kLastPlace); }
+float placeOfRate(float death) { return std::clamp(roughLog2(death) / -kOctaves, 0.0f, kLastPlace); }
 
 /// One frame's steps s along kReach covariances that lie `stride` apart, the first of them of no distance.
 void walk(float* r, int stride, float s) {
@@ -29,6 +32,7 @@ void walk(float* r, int stride, float s) {
 
 }  // namespace
 
+/// Calls add(noise, part) for each tile and the two rates next to a place.
 template <class Add>
 void ReferenceWalk::between(float place, const Add& add) const {
   const int first = std::min(static_cast<int>(place), kReferenceRates - 2);
@@ -39,39 +43,41 @@ void ReferenceWalk::between(float place, const Add& add) const {
   }
 }
 
-ReferenceNoise ReferenceWalk::neighbours(float place) const {
-  ReferenceNoise sum;
-  between(place, [&](const ReferenceNoise& n, float b) {
-    sum.row += b * n.row, sum.column += b * n.column, sum.diagonal += b * n.diagonal;
-    sum.share += b * n.share, sum.meanAge += b * n.meanAge;
-  });
-  return sum;
+float ReferenceWalk::placeOf(const Remembered<float>& history) const {
+  const float death = std::max(deathRate(history.factor), rateAt(kReferenceRates - 1)), place = placeOfRate(death);
+  if (!(place > 0) || !(history.weight > 0)) return place;
+  float reference = 0;
+  between(place, [&](const ReferenceNoise& n, float b) { reference += b * n.meanAge; });
+  const float age = history.ageSum / history.weight;
+  if (!(age < kAsOld * reference)) return place;
+  return placeOfRate(death + deathRateOfAge(age) - deathRateOfAge(reference));  // [ledger young]
 }
 
 OlderNoise<float> ReferenceWalk::older(const TapPairs& pairs, const Remembered<float>& history) const {
-  constexpr float kAsOld = 0.98f;  // ages this near the reference's are the same
-  const float death = deathRate(history.factor), place = placeOf(death);
-  ReferenceNoise noise = neighbours(place);
-  if (place > 0 && history.ageSum < kAsOld * noise.meanAge * history.weight) {
-    const float younger = deathRateOfAge(history.ageSum / history.weight) / deathRateOfAge(noise.meanAge);
-    noise = neighbours(placeOf(death * younger));  // [ledger young]
-  }
-  return {noise.share, pairs.row * noise.row + pairs.column * noise.column + pairs.diagonal * noise.diagonal};
+  float here = 0, row = 0, column = 0, diagonal = 0;
+  between(placeOf(history), [&](const ReferenceNoise& n, float b) {
+    here += b * n.here, row += b * n.row, column += b * n.column, diagonal += b * n.diagonal;
+  });
+  const float older = here - 1;
+  if (!(older > 1e-6f)) return {};
+  return {older / here,
+          (pairs.row * row + pairs.column * column + pairs.diagonal * diagonal) / older};  // [ledger older]
 }
 
 EdgeNoise<float> ReferenceWalk::edge(const TapPairs& pairs, const Arrival& arrival, const Remembered<float>& history,
                                      float perNoise) const {
-  const float death = deathRate(history.factor);
-  EdgeWalk<float> row, column;
-  between(placeOf(death), [&](const ReferenceNoise& n, float b) {
-    row.noise += b * n.alongRow.noise, row.alike += b * n.alongRow.alike;
-    column.noise += b * n.alongColumn.noise, column.alike += b * n.alongColumn.alike;
+  EdgeWalks<float> walks{};
+  between(placeOf(history), [&](const ReferenceNoise& n, float b) {
+    walks.row.noise += b * n.alongRow.noise, walks.row.alike += b * n.alongRow.alike;
+    walks.column.noise += b * n.alongColumn.noise, walks.column.alike += b * n.alongColumn.alike;
   });
-  return edgeNoise(pairs, arrival, row, column, death, stillNoise(history.weight * perNoise, death));
+  const float death = deathRate(history.factor);
+  return edgeNoise(pairs, arrival, walks, death, stillNoise(history.weight, perNoise, death));
 }
 
 WalkTiles::WalkTiles(int width, int height)
     : width_(width),
+      height_(height),
       now_((width + kSide - 1) / kSide, (height + kSide - 1) / kSide, Tile{}),
       before_(now_),
       rates_(now_.width(), now_.height(), ReferenceWalk::Rates{}) {}
@@ -88,26 +94,24 @@ WalkTiles::Tile WalkTiles::mixedAt(core::vec2 position) const {
   const Tile &a = now_(p.i0, p.j0), &b = now_(p.i1, p.j0), &c = now_(p.i0, p.j1), &d = now_(p.i1, p.j1);
   Tile mixed;
   for (int k = 0; k < kReferenceRates; ++k) {
-    const auto mix = [&](const auto& of) {
-      for (int i = 0; i < kReach; ++i)
-        of(mixed.lags[k])[i] = p.mix(of(a.lags[k])[i], of(b.lags[k])[i], of(c.lags[k])[i], of(d.lags[k])[i]);
+    const auto mix = [&](auto Lags::*of) {
+      for (std::size_t i = 0; i < (mixed.lags[k].*of).size(); ++i)
+        (mixed.lags[k].*of)[i] = p.mix((a.lags[k].*of)[i], (b.lags[k].*of)[i], (c.lags[k].*of)[i], (d.lags[k].*of)[i]);
     };
-    for (int j = 0; j < kReach; ++j) mix([j](auto& lags) -> auto& { return lags.r[j]; });
-    mix([](auto& lags) -> auto& { return lags.alongRow; });
-    mix([](auto& lags) -> auto& { return lags.alongColumn; });
+    mix(&Lags::r), mix(&Lags::alongRow), mix(&Lags::alongColumn);
   }
   mixed.frames = p.mix(a.frames, b.frames, c.frames, d.frames);
   return mixed;
 }
 
 void WalkTiles::step(Lags& lags, const WalkSteps<float>& s, float kept) {
-  for (Line& row : lags.r) walk(row.data(), 1, s.x);
-  for (int i = 0; i < kReach; ++i) walk(&lags.r[0][i], kReach, s.y);
+  for (int i = 0; i < kReach; ++i) walk(&lags.r[i * kReach], 1, s.x);
+  for (int i = 0; i < kReach; ++i) walk(&lags.r[i], kReach, s.y);
   walk(lags.alongRow.data(), 1, s.x);
   walk(lags.alongColumn.data(), 1, s.y);
-  for (Line* line : {&lags.r[0], &lags.r[1], &lags.r[2], &lags.alongRow, &lags.alongColumn})
-    for (float& r : *line) r *= kept;
-  lags.r[0][0] += 1, lags.alongRow[0] += 1, lags.alongColumn[0] += 1;  // [ledger reference]
+  for (float& r : lags.r) r *= kept;
+  for (int i = 0; i < kReach; ++i) lags.alongRow[i] *= kept, lags.alongColumn[i] *= kept;
+  lags.r[0] += 1, lags.alongRow[0] += 1, lags.alongColumn[0] += 1;  // [ledger reference]
 }
 
 WalkTiles::Tile WalkTiles::next(const TileMotion& motion) const {
@@ -120,19 +124,18 @@ WalkTiles::Tile WalkTiles::next(const TileMotion& motion) const {
 
 ReferenceNoise WalkTiles::noiseOf(const Lags& lags, float frames, float death) {
   const auto& r = lags.r;
-  const float older = r[0][0] - 1, one = older > 1e-6f ? 1 / older : 0.0f;
   const float d = 1 / std::sqrt(1 + death), left = std::pow(d, frames);
   const float meanAge = d / (1 - d) - (left < 1 ? frames * left / (1 - left) : 0.0f);
   const float still = (1 - left * left) * (1 + 1 / death);  // of what never steps
-  const auto along = [&](const Line& line) {
+  const auto along = [&](const std::array<float, kReach>& line) {
     return EdgeWalk<float>{std::min(1.0f, line[0] / still), line[1] / line[0]};  // [ledger along]
   };
-  return {one * r[0][1],           one * r[1][0],        one * r[1][1],          older / r[0][0],  // [ledger older]
-          std::max(0.0f, meanAge), along(lags.alongRow), along(lags.alongColumn)};
+  return {r[0], r[1], r[kReach], r[kReach + 1], std::max(0.0f, meanAge), along(lags.alongRow), along(lags.alongColumn)};
 }
 
 void WalkTiles::update(core::In<Taps> taps) {
   CHECK_EQ(taps.width, width_);
+  CHECK_EQ(taps.height, height_);
   core::forEachTile(
       taps.width, taps.height,
       [&](int x0, int y0, int x1, int y1) {

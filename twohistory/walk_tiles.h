@@ -4,14 +4,16 @@
 // Beside every tile of pixels lies a reference: the covariances R_ij of pixels i, j apart are walked on, frame by
 // frame, for a ladder of death rates u, carried along with the image:
 //
-//   [ledger reference]  R <- D K_x K_y R, then R_00 + 1;  D = 1 / (1 + u),  K R_n = s/2 R_(n-1) + (1 - s) R_n + s/2
-//   R_(n+1) [ledger older]      O = 1 - 1 / R_00,  q_ij = R_ij / (R_00 - 1): what is older than a frame, and how alike
-//   it is [ledger along]      V = R_0 (1 - D) / (1 - D^T), rho = R_1 / R_0 of a walk along one axis alone, after T
-//   frames: its
-//                       noise over that of what never steps, and how alike it is, for the image's edge (edge_noise.h)
+//   [ledger reference]  R <- D K_x K_y R, then R_00 + 1,  D = 1 / (1 + u)
+//                       K R_n = s/2 R_(n-1) + (1 - s) R_n + s/2 R_(n+1)
+//   [ledger older]      O = 1 - 1 / R_00,  q_ij = R_ij / (R_00 - 1)
+//   [ledger along]      V = R_0 (1 - D) / (1 - D^N),  rho = R_1 / R_0
+//   [ledger young]      u <- u + rate(A / W) - rate(a),  rate(x) = (1 + 1/x)^2 - 1
 //
-// R reaches as far as kReach pixels; beyond, it falls as between its last two. A pixel that is younger than its tile
-// has a shorter walk: [ledger young]  u -> u rate(A / W) / rate(mean age of the reference), rate(a) = (1 + 1/a)^2 - 1.
+// The second: what is older than a frame, and how alike it is. R reaches as far as kReach pixels; beyond, it falls as
+// between its last two. The third, for the image's edge (edge_noise.h), is of a walk along one axis alone, in a tile
+// that has been seen for N frames. The fourth: a pixel that is younger than its tile, whose mean age is a, has a
+// shorter walk.
 #pragma once
 
 #include "core/image.h"
@@ -21,13 +23,14 @@
 
 namespace twohistory {
 
-inline constexpr int kReferenceRates = 4;  ///< u = 1, 1/4, 1/16, 1/64: decays of .71, .89, .97, .99; others lie between
+/// u = 1, 1/4, 1/16, 1/64, 1/256: decays of .71, .89, .97, .992 and .998. Others lie between, or are the nearest.
+inline constexpr int kReferenceRates = 5;
 
-/// What a reference history that dies at one rate says of pixels that lie next to each other.
+/// What a reference that dies at one rate knows of pixels that lie next to each other.
 struct ReferenceNoise {
-  float row = 0, column = 0, diagonal = 0;    ///< q
-  float share = 0;                            ///< O
-  float meanAge = 0;                          ///< of the history, in frames
+  float here = 0;                             ///< R_00
+  float row = 0, column = 0, diagonal = 0;    ///< R_10, R_01, R_11
+  float meanAge = 0;                          ///< in frames
   EdgeWalk<float> alongRow{}, alongColumn{};  ///< of a walk in x or y alone
 };
 
@@ -43,10 +46,10 @@ class ReferenceWalk {
                         float perNoise) const;
 
  private:
-  /// Sum over the tiles and the two rates next to a place on the ladder, in [0, kReferenceRates - 1].
   template <class Add>
   void between(float place, const Add& add) const;
-  ReferenceNoise neighbours(float place) const;
+  /// Where a history's noise lies on the ladder, in [0, kReferenceRates - 1].
+  float placeOf(const Remembered<float>& history) const;
 };
 
 class WalkTiles {
@@ -66,11 +69,10 @@ class WalkTiles {
   std::size_t bytes() const { return now_.bytes() + before_.bytes() + rates_.bytes(); }
 
  private:
-  using Line = std::array<float, kReach>;
   /// Of one death rate.
   struct Lags {
-    std::array<Line, kReach> r{};    ///< [j][i]
-    Line alongRow{}, alongColumn{};  ///< of walks in x or y alone
+    std::array<float, kReach * kReach> r{};               ///< R_ij at j kReach + i
+    std::array<float, kReach> alongRow{}, alongColumn{};  ///< of walks in x or y alone
   };
   struct Tile {
     std::array<Lags, kReferenceRates> lags{};
@@ -81,7 +83,7 @@ class WalkTiles {
   static void step(Lags& lags, const WalkSteps<float>& s, float kept);
   static ReferenceNoise noiseOf(const Lags& lags, float frames, float death);
 
-  int width_ = 0;
+  int width_ = 0, height_ = 0;
   core::Image<Tile> now_, before_;  ///< before_ is where the next frame is written
   core::Image<ReferenceWalk::Rates> rates_;
 };
