@@ -294,6 +294,17 @@ TEST(WalkTiles, MoveWithTheImageAndForgetWhatIsNew) {
   EXPECT_EQ(olderAt(walks, 56, 20).share, 0);
 }
 
+TEST(WalkTiles, AreNoLessAlikeBesideATileThatIsNew) {
+  WalkTiles walks(kSize, kSize);
+  for (int f = 0; f < 20; ++f) walks.update(tapsOf(vec2(0.5f)));
+  core::Image<Taps> taps = tapsOf(vec2(0.5f));
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 32; x < 48; ++x) taps(x, y) = {};
+  walks.update(taps);
+  EXPECT_NEAR(olderAt(walks, 48, 56).common, olderAt(walks, 58, 56).common, 0.01f);  // between both tiles' middles
+  EXPECT_LT(olderAt(walks, 48, 56).share, 0.9f * olderAt(walks, 58, 56).share);      // control
+}
+
 TEST(WalkTiles, KnowWalksAlongTheEdge) {
   WalkTiles walks(kSize, kSize);
   for (int f = 0; f < 200; ++f) walks.update(tapsOf(vec2(0, 0.5f)));

@@ -24,6 +24,7 @@ float placeOfRate(float death) { return std::clamp(roughLog2(death) / -kOctaves,
 
 /// One frame's steps s along kReach covariances that lie `stride` apart, the first of them of no distance.
 void walk(float* r, int stride, float s) {
+  static_assert(WalkTiles::kReach == 3);
   const float here = r[0], one = r[stride], two = r[2 * stride], beyond = one > two ? two * two / one : two;
   r[0] = (1 - s) * here + s * one;
   r[stride] = (1 - s) * one + 0.5f * s * (here + two);

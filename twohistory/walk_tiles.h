@@ -41,6 +41,7 @@ class ReferenceWalk {
   std::array<const Rates*, 4> tile;
   std::array<float, 4> part;  ///< of a tile, with sum 1
 
+  /// As of SettledWalk (mixing.h).
   OlderNoise<float> older(const TapPairs& pairs, const Remembered<float>& history) const;
   EdgeNoise<float> edge(const TapPairs& pairs, const Arrival& arrival, const Remembered<float>& history,
                         float perNoise) const;
