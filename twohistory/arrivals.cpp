@@ -46,12 +46,6 @@ ArrivalGrid::ArrivalGrid(int width, int height)
       before_(now_),
       isRecent_((width + kTile - 1) / kTile, (height + kTile - 1) / kTile, 0) {}
 
-vec2 ArrivalGrid::sourceOf(const Taps& taps) const {
-  vec2 position(0);
-  for (int k = 0; k < 4; ++k) position += taps.b[k] * vec2(taps.pixel[k] % width_, taps.pixel[k] / width_);
-  return position;
-}
-
 Arrival ArrivalGrid::between(vec2 position) const {
   const Span x(position.x, width_), y(position.y, height_);
   const Node a = now_(x.first, y.first), b = now_(x.second, y.first), c = now_(x.first, y.second),
@@ -69,7 +63,7 @@ ArrivalGrid::Node ArrivalGrid::next(core::In<Taps> taps, ivec2 node) const {
   const ivec2 asked = glm::clamp(pixel, glm::min(ivec2(1), last), glm::max(last - 1, ivec2(0)));
   const Taps& t = taps(asked.x, asked.y);
   if (!t.valid()) return {kLongAgo, kLongAgo};
-  const vec2 motion = sourceOf(t) - vec2(asked), source = vec2(pixel) + motion;
+  const vec2 motion = meanPosition(t, width_) - vec2(asked), source = vec2(pixel) + motion;
   const Arrival old = between(source);
   return {arrivalAlong(source.x, motion.x, width_, old.x), arrivalAlong(source.y, motion.y, height_, old.y)};
 }

@@ -30,7 +30,7 @@ class ArrivalGrid {
 
   /// Of the last frame's image at the mean position of `taps`, at least one with b > 0. near: a pixel beside it.
   Arrival at(const Taps& taps, core::ivec2 near) const {
-    return isRecent_(near.x / kTile, near.y / kTile) ? between(sourceOf(taps)) : Arrival{};
+    return isRecent_(near.x / kTile, near.y / kTile) ? between(meanPosition(taps, width_)) : Arrival{};
   }
   /// Adds a frame. taps: width x height, without padding.
   void update(core::In<Taps> taps);
@@ -42,7 +42,6 @@ class ArrivalGrid {
   struct Node {
     std::uint16_t x, y;
   };
-  core::vec2 sourceOf(const Taps& taps) const;
   Arrival between(core::vec2 position) const;
   Node next(core::In<Taps> taps, core::ivec2 node) const;
 

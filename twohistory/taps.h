@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "core/maths.h"
+
 namespace twohistory {
 
 /// pixel: row-major indices into the previous frame. b: bilinear weights of the valid taps, renormalised to sum 1;
@@ -26,6 +28,13 @@ inline int strongest(const Taps& taps) {
   for (int k = 1; k < 4; ++k)
     if (taps.b[k] > taps.b[best]) best = k;
   return best;
+}
+
+/// Where the taps lie on average, in pixels of the previous frame, of that width. taps: valid.
+inline core::vec2 meanPosition(const Taps& taps, int width) {
+  core::vec2 position(0);
+  for (int k = 0; k < 4; ++k) position += taps.b[k] * core::vec2(taps.pixel[k] % width, taps.pixel[k] / width);
+  return position;
 }
 
 /// How values that cannot be mixed (reservoirs) choose one tap. Never looks at the values.

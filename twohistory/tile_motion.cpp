@@ -24,8 +24,7 @@ TileMotion tileMotion(core::In<Taps> taps, core::ivec2 first, core::ivec2 end) {
       const Taps& t = taps(x, y);
       if (!t.valid()) continue;
       const TapPairs pairs = pairsOf(t, taps.width);
-      core::vec2 moved(-x, -y);
-      for (int k = 0; k < 4; ++k) moved += t.b[k] * core::vec2(t.pixel[k] % taps.width, t.pixel[k] / taps.width);
+      const core::vec2 moved = meanPosition(t, taps.width) - core::vec2(x, y);
       column.add(pairs.alongRow(), moved.x), row.add(pairs.alongColumn(), moved.y);
       count += 1;
     }
