@@ -21,6 +21,7 @@ using core::vec2;
 using twohistory::Forgetting;
 using twohistory::Ledger;
 using twohistory::Policy;
+using twohistory::SampleCounts;
 using twohistory::TapPairs;
 using twohistory::Taps;
 using twohistory::WalkMemory;
@@ -48,6 +49,16 @@ core::Image<Taps> tapsOf(const std::function<vec2(int, int)>& moved) {
 }
 core::Image<Taps> tapsOf(vec2 moved) {
   return tapsOf([=](int, int) { return moved; });
+}
+
+SampleCounts countsOf(const core::Image<float>& n) {
+  SampleCounts counts(n.width(), n.height());
+  counts.update(n);
+  return counts;
+}
+const SampleCounts& oneEach() {
+  static const SampleCounts counts = countsOf(core::Image<float>(kSize, kSize, 1));
+  return counts;
 }
 
 /// One frame: how far the image moves, and how many samples every pixel has.
@@ -96,12 +107,26 @@ struct ThisFramesCounts : WalkMemory {
   Walk operator()(const Taps& taps, const TapPairs& pairs) const { return {WalkMemory::operator()(taps, pairs)}; }
 };
 
+/// Whose references have one sample in every frame, as if counts never changed.
+struct UniformReferences {
+  int width;
+  WalkTiles walks;
+  SampleCounts counts, ones;
+  UniformReferences(int w, int h) : width(w), walks(w, h), counts(w, h), ones(countsOf(core::Image<float>(w, h, 1))) {}
+  twohistory::RememberedWalk operator()(const Taps& taps, const TapPairs&) const {
+    twohistory::RememberedWalk walk{walks.at(taps.pixel[0]), taps.b, {}, {}};
+    for (int k = 0; k < 4; ++k) walk.counts[k] = counts.at(taps.pixel[k]);
+    return walk;
+  }
+  void update(core::In<Taps> taps, core::In<float> n) { counts.update(n), walks.update(taps, ones); }
+};
+
 /// Whose walks are as long as their tile's, however young they are.
 struct AsOldAsTheTile : WalkMemory {
   using WalkMemory::WalkMemory;
   struct Walk : twohistory::RememberedWalk {
-    twohistory::OlderNoise<float> older(const TapPairs& p, const twohistory::Remembered<float>& h) const {
-      return RememberedWalk::older(p, {h.weight, 1e9f * h.weight, h.factor});
+    twohistory::OlderNoise<float> older(const TapPairs& p, const twohistory::Remembered<float>& h, float fresh) const {
+      return RememberedWalk::older(p, {h.weight, 1e9f * h.weight, h.factor}, fresh);
     }
   };
   Walk operator()(const Taps& taps, const TapPairs& pairs) const { return {WalkMemory::operator()(taps, pairs)}; }
@@ -182,28 +207,45 @@ TEST(ReferenceWalk, PredictsVariancesOfMotionThatBeginsKeepsOnAndEnds) {
   EXPECT_GT(guessed.high, 1.1);
 }
 
-TEST(ReferenceWalk, PredictsVariancesWhereCountsHaveChangedByTheLastFramesCounts) {
-  std::vector<Course> courses;
+/// Counts that were `from` and are `to` in the last `since` of 40 frames of motion.
+Course courseOfJump(vec2 moved, float from, float to, int since) {
+  Course course = courseOf(1, 39, 0, moved);
+  for (std::size_t f = 0; f < course.size(); ++f)
+    course[f].n = f + static_cast<std::size_t>(since) < course.size() ? from : to;
+  return course;
+}
+
+TEST(ReferenceWalk, PredictsVariancesWhereCountsHaveJumpedEverywhere) {
+  std::vector<Course> jumps, pauses, blinks;
   for (const vec2 moved : {vec2(0.2f), vec2(0.5f), vec2(0.5f, 0)})
-    for (const auto& [from, to] : {std::pair{8.0f, 1.0f}, {1.0f, 8.0f}, {1.0f, 0.0f}})
-      for (const int since : {1, 2, 5, 12}) {
-        if (to == 0 && since > 5) continue;  // the longer there are no samples, the worse: docs/results.md, 10
-        Course course = courseOf(1, 39, 0, moved);
-        for (std::size_t f = 0; f < course.size(); ++f)
-          course[f].n = f + static_cast<std::size_t>(since) < course.size() ? from : to;
-        courses.push_back(course);
-      }
-  const std::vector<Policy> policies{{Weighting::frames, Forgetting::decay, 0.95},
-                                     {Weighting::samples, Forgetting::decay, 0.95},
-                                     {Weighting::frames, Forgetting::decay, 0.98},
-                                     {Weighting::samples, Forgetting::decay, 0.98}};
-  const Range ours = rangeOf<WalkMemory>(courses, policies);
-  const Range byThisFrames = rangeOf<ThisFramesCounts>(courses, policies);  // control
-  std::printf("exact over predicted: %.3f .. %.3f; by this frame's counts %.3f .. %.3f\n", ours.low, ours.high,
-              byThisFrames.low, byThisFrames.high);
-  EXPECT_GT(ours.low, 0.85);
-  EXPECT_LT(ours.high, 1.55);
-  EXPECT_LT(byThisFrames.low, 0.75);
+    for (const int since : {1, 2, 5, 12, 24}) {
+      jumps.push_back(courseOfJump(moved, 8, 1, since)), jumps.push_back(courseOfJump(moved, 1, 8, since));
+      pauses.push_back(courseOfJump(moved, 1, 0, since)), blinks.push_back(pauses.back());
+      if (since > 5)  // nothing for five frames, and then again
+        for (auto frame = blinks.back().end() - since + 5; frame != blinks.back().end(); ++frame) frame->n = 1;
+    }
+  const std::vector<Policy> policies{
+      {Weighting::frames, Forgetting::decay, 0.95},
+      {Weighting::samples, Forgetting::decay, 0.95},
+      {Weighting::frames, Forgetting::decay, 0.98},
+      {Weighting::samples, Forgetting::decay, 0.98},
+      {Weighting::custom, Forgetting::decay, 0.98, [](double n) { return std::sqrt(n); }}};
+  const auto print = [](const char* who, const Range& range) {
+    std::printf("exact over predicted, %s: %.3f .. %.3f\n", who, range.low, range.high);
+    return range;
+  };
+  const Range ours = print("counts jump", rangeOf<WalkMemory>(jumps, policies));
+  EXPECT_GT(ours.low, 0.93);
+  EXPECT_LT(ours.high, 1.07);
+  const Range none = print("no samples any more", rangeOf<WalkMemory>(pauses, policies));
+  EXPECT_GT(none.low, 0.9);
+  EXPECT_LT(none.high, 1.2);
+  const Range again = print("and again", rangeOf<WalkMemory>(blinks, policies));
+  EXPECT_GT(again.low, 0.9);
+  EXPECT_LT(again.high, 1.2);
+  EXPECT_LT(print("control: by this frame's counts", rangeOf<ThisFramesCounts>(jumps, policies)).low, 0.75);
+  EXPECT_GT(print("control: uniform references", rangeOf<UniformReferences>(jumps, policies)).high, 1.35);
+  EXPECT_GT(print("control: the same without samples", rangeOf<UniformReferences>(pauses, policies)).high, 3);
 }
 
 TEST(ReferenceWalk, PredictsVariancesOfWhatHasJustComeOutFromBehindSomething) {
@@ -263,51 +305,119 @@ TEST(RememberedWalks, ReachLedgersThroughAccumulate) {
 /// What the reference says at (x, y) of a history that forgets little and has settled.
 twohistory::OlderNoise<float> olderAt(const WalkTiles& walks, int x, int y) {
   constexpr float kDecay = 0.98f;
-  return walks.at(y * kSize + x).older({0.25f, 0.25f, 0.25f}, {1 / (1 - kDecay), 1e9f, kDecay});
+  return walks.at(y * kSize + x).older({0.25f, 0.25f, 0.25f}, {1 / (1 - kDecay), 1e9f, kDecay}, 1 - kDecay * kDecay);
 }
 
 TEST(WalkTiles, KnowNothingInCommonBeforeAnythingMoved) {
   WalkTiles walks(kSize, kSize);
   EXPECT_EQ(olderAt(walks, 20, 20).share, 0);
   EXPECT_EQ(olderAt(walks, 20, 20).common, 0);
-  for (int f = 0; f < 9; ++f) walks.update(tapsOf(vec2(f % 3, 0)));
+  for (int f = 0; f < 9; ++f) walks.update(tapsOf(vec2(f % 3, 0)), oneEach());
   EXPECT_GT(olderAt(walks, 20, 20).share, 0.8f);
   EXPECT_EQ(olderAt(walks, 20, 20).common, 0);
-  EXPECT_LT(static_cast<double>(walks.bytes()) / (kSize * kSize), 3.1);
+  EXPECT_LT(static_cast<double>(walks.bytes()) / (kSize * kSize), 7.6);
+}
+
+/// As olderAt, of a history whose noise is fresh to this share.
+twohistory::OlderNoise<float> olderOf(const WalkTiles& walks, float fresh) {
+  const float decay = 1 / std::sqrt(1 + 1 / 16.0f);  // on the ladder
+  return walks.at(30 * kSize + 30).older({0.25f, 0.25f, 0.25f}, {1 / (1 - decay), 1e9f, decay}, fresh);
+}
+
+TEST(WalkTiles, LieBetweenBothWeightingsByWhatIsFresh) {
+  WalkTiles walks(kSize, kSize);
+  const SampleCounts eight = countsOf(core::Image<float>(kSize, kSize, 8));
+  for (int f = 0; f < 300; ++f) walks.update(tapsOf(vec2(0.3f)), oneEach());
+  EXPECT_EQ(olderOf(walks, 0).share, olderOf(walks, 1).share);  // constant counts: both are the same
+  EXPECT_EQ(olderOf(walks, 0).common, olderOf(walks, 1).common);
+  const float settled = olderOf(walks, 0).common;
+  for (int f = 0; f < 12; ++f) walks.update(tapsOf(vec2(0.3f)), eight);
+  const auto frames = olderOf(walks, 0), samples = olderOf(walks, 1);
+  EXPECT_GT(frames.share, samples.share + 0.03f);  // by frames eight quiet samples add little to what is old
+  EXPECT_GT(frames.common, 1.1f * settled);        // and that has walked for twelve frames more
+  EXPECT_LT(samples.common, settled);
+  for (const float share : {0.25f, 0.5f, 0.75f}) {
+    const float fresh = 1 - samples.share - share * (frames.share - samples.share);
+    EXPECT_NEAR(olderOf(walks, fresh).share, 1 - fresh, 1e-5f);
+    EXPECT_LT(olderOf(walks, fresh).common, frames.common);
+    EXPECT_GT(olderOf(walks, fresh).common, samples.common);
+  }
+  WalkTiles back = walks;
+  for (int f = 0; f < 300; ++f) back.update(tapsOf(vec2(0.3f)), eight);
+  EXPECT_NEAR(olderOf(back, 0).common, settled, 1e-3f);  // settled again
 }
 
 TEST(WalkTiles, MoveWithTheImageAndForgetWhatIsNew) {
   const auto mixes = [](int x, int) { return x < 32 ? vec2(0) : vec2(0.5f); };  // the right half
   WalkTiles walks(kSize, kSize);
-  for (int f = 0; f < 20; ++f) walks.update(tapsOf(mixes));
+  for (int f = 0; f < 20; ++f) walks.update(tapsOf(mixes), oneEach());
   EXPECT_GT(olderAt(walks, 56, 20).common, 0.4f);
   EXPECT_EQ(olderAt(walks, 8, 20).common, 0);
   WalkTiles moved = walks, stays = walks;
-  moved.update(tapsOf(vec2(-32, 0))), stays.update(tapsOf(vec2(0)));
+  moved.update(tapsOf(vec2(-32, 0)), oneEach()), stays.update(tapsOf(vec2(0)), oneEach());
   EXPECT_NEAR(olderAt(moved, 24, 20).common, olderAt(stays, 56, 20).common, 0.01f);
   EXPECT_GT(olderAt(moved, 24, 20).common, 0.2f);
   core::Image<Taps> taps = tapsOf(vec2(0));
   for (int y = 0; y < kSize; ++y)
     for (int x = 32; x < kSize; ++x) taps(x, y) = {};
-  walks.update(taps);
+  walks.update(taps, oneEach());
   EXPECT_EQ(olderAt(walks, 56, 20).common, 0);
   EXPECT_EQ(olderAt(walks, 56, 20).share, 0);
 }
 
 TEST(WalkTiles, AreNoLessAlikeBesideATileThatIsNew) {
   WalkTiles walks(kSize, kSize);
-  for (int f = 0; f < 20; ++f) walks.update(tapsOf(vec2(0.5f)));
+  for (int f = 0; f < 20; ++f) walks.update(tapsOf(vec2(0.5f)), oneEach());
   core::Image<Taps> taps = tapsOf(vec2(0.5f));
   for (int y = 0; y < kSize; ++y)
     for (int x = 32; x < 48; ++x) taps(x, y) = {};
-  walks.update(taps);
+  walks.update(taps, oneEach());
   EXPECT_NEAR(olderAt(walks, 48, 56).common, olderAt(walks, 58, 56).common, 0.01f);  // between both tiles' middles
   EXPECT_LT(olderAt(walks, 48, 56).share, 0.9f * olderAt(walks, 58, 56).share);      // control
 }
 
+/// What is left at the edge of what reached it T frames ago or earlier, in a history of decay d: sum of d^2k w^2 / n.
+double leftOf(const std::vector<float>& counts, Weighting weighting, double d, std::size_t frames) {
+  double sum = 0;
+  for (std::size_t k = frames; k < counts.size(); ++k) {
+    const double n = counts[counts.size() - 1 - k], w = freshWeight(weighting, n);
+    sum += n > 0 ? std::pow(d, 2.0 * double(k)) * w * w / n : 0;
+  }
+  return sum;
+}
+
+TEST(WalkTiles, KnowHowNoisySamplesWereThatReachedTheEdge) {
+  const float kDecay = std::sqrt(16 / 17.0f);  // on the ladder of rates
+  for (const float last : {1.0f, 8.0f, 0.125f, 0.0f}) {
+    std::vector<float> counts(300, 1.0f);
+    counts.insert(counts.end(), 12, last);
+    WalkTiles walks(kSize, kSize);
+    for (const float n : counts) walks.update(tapsOf(vec2(0)), countsOf(core::Image<float>(kSize, kSize, n)));
+    for (const Weighting weighting : {Weighting::frames, Weighting::samples}) {
+      float weight = 0, ageSum = 0;
+      for (const float n : counts) {
+        ageSum = kDecay * (ageSum + weight);
+        weight = kDecay * weight + freshWeight(weighting, n);
+      }
+      const auto noise = static_cast<float>(leftOf(counts, weighting, kDecay, 0));  // C: nothing moves
+      const float perNoise = last > 0 ? freshWeight(weighting, last) / (last * noise) : 0.0f;
+      for (const float frames : {4.0f, 12.0f, 20.0f, 40.0f}) {
+        const twohistory::Arrival arrival{frames, twohistory::Arrival::kLongAgo};
+        const auto share =
+            walks.at(30 * kSize + 30).edge({0.5f, 0, 0}, arrival, {weight, ageSum, kDecay}, perNoise).share;
+        const double exact = leftOf(counts, weighting, kDecay, static_cast<std::size_t>(frames)) / double(noise);
+        EXPECT_NEAR(share / exact, 1, 0.02) << last << ", " << frames;
+        if (last != 8 || weighting != Weighting::frames || frames < 12) continue;
+        const float byLastCounts = twohistory::stillNoise(weight, perNoise, twohistory::deathRate(kDecay));
+        EXPECT_LT(byLastCounts * std::pow(kDecay, 2 * frames) / exact, 0.2);  // control
+      }
+    }
+  }
+}
+
 TEST(WalkTiles, KnowWalksAlongTheEdge) {
   WalkTiles walks(kSize, kSize);
-  for (int f = 0; f < 200; ++f) walks.update(tapsOf(vec2(0, 0.5f)));
+  for (int f = 0; f < 200; ++f) walks.update(tapsOf(vec2(0, 0.5f)), oneEach());
   // At the left edge walks go up and down alone, and have settled: V = u / (u + l), rho as of a row.
   constexpr float kDecay = 0.95f;
   const float death = twohistory::deathRate(kDecay), rho = twohistory::walkCorrelation(death, 0.5f);
@@ -320,7 +430,7 @@ TEST(WalkTiles, KnowWalksAlongTheEdge) {
   EXPECT_NEAR(edge({0, 0.5f, 0}).common / (0.5f * noise), rho, 0.03f);
   EXPECT_EQ(edge({0.5f, 0, 0}).common, 0.5f * noise);  // what lies in a row is one value
   WalkTiles turned(kSize, kSize);
-  for (int f = 0; f < 200; ++f) turned.update(tapsOf(vec2(0.5f, 0)));
+  for (int f = 0; f < 200; ++f) turned.update(tapsOf(vec2(0.5f, 0)), oneEach());
   const auto upper = turned.at(30 * kSize + 30)
                          .edge({0.5f, 0, 0}, {twohistory::Arrival::kLongAgo, 0}, {20, 1e9f, kDecay}, (1 + kDecay) / 20);
   EXPECT_NEAR(upper.share, noise, 1e-3f);
@@ -340,16 +450,16 @@ TEST(TileMotion, IsNotSlowedByWhatStandsBesideWhatMoves) {
 
 TEST(WalkTiles, KnowThatYoungerPixelsHaveWalkedLess) {
   WalkTiles walks(kSize, kSize);
-  for (int f = 0; f < 60; ++f) walks.update(tapsOf(vec2(0.1f)));
+  for (int f = 0; f < 60; ++f) walks.update(tapsOf(vec2(0.1f)), oneEach());
   const auto commonAt = [&](float age) {
-    return walks.at(30 * kSize + 30).older({0.25f, 0.25f, 0.25f}, {1, age, 0.98f}).common;
+    return walks.at(30 * kSize + 30).older({0.25f, 0.25f, 0.25f}, {1, age, 0.98f}, 0.1f).common;
   };
   EXPECT_EQ(commonAt(24), commonAt(1e6f));  // as old as the tile, or older
   EXPECT_LT(commonAt(4), 0.8f * commonAt(24));
   EXPECT_LT(commonAt(1), 0.8f * commonAt(4));
   EXPECT_GE(commonAt(0), 0);
   const auto forgetsNothing = [&](float age) {
-    return walks.at(30 * kSize + 30).older({0.25f, 0.25f, 0.25f}, {1, age, 1.0f}).common;
+    return walks.at(30 * kSize + 30).older({0.25f, 0.25f, 0.25f}, {1, age, 1.0f}, 0.1f).common;
   };
   EXPECT_LT(forgetsNothing(2), 0.8f * forgetsNothing(30));
 }
@@ -360,8 +470,11 @@ TEST(WalkTiles, StayFiniteOverManyFramesOfAnyMotion) {
     const int width = static_cast<int>(size.x), height = static_cast<int>(size.y);
     WalkTiles walks(width, height);
     core::Image<Taps> taps(width, height);
+    core::Image<float> n(width, height);
     for (int f = 0; f < 3000; ++f) {
       const vec2 moved = 3.0f * rng.uniform2();
+      for (int i = 0; i < width * height; ++i)  // none in half of the frames
+        n.data()[i] = f / 40 % 2 ? 0.0f : std::exp2(40 * rng.uniform() - 20);
       for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
           const std::int32_t here = y * width + x, right = std::min(x + 1, width - 1) - x;
@@ -370,12 +483,14 @@ TEST(WalkTiles, StayFiniteOverManyFramesOfAnyMotion) {
           taps(x, y) = {{here, here + right, here + below, here + right + below},
                         {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b}};
         }
-      walks.update(taps);
+      walks.update(taps, countsOf(n));
     }
     for (const float decay : {0.0f, 0.3f, 0.9f, 0.98f, 1.0f}) {
-      const auto older = walks.at(0).older({0.3f, 0.3f, 0.15f}, {1e6f, 1e12f, decay});
-      EXPECT_TRUE(older.share >= 0 && older.share < 1) << decay << ": " << older.share;
-      EXPECT_TRUE(older.common >= 0 && older.common <= 0.751f) << decay << ": " << older.common;
+      for (const float fresh : {0.0f, 0.2f, 1.0f}) {
+        const auto older = walks.at(0).older({0.3f, 0.3f, 0.15f}, {1e6f, 1e12f, decay}, fresh);
+        EXPECT_TRUE(older.share >= 0 && older.share <= 1) << decay << ": " << older.share;
+        EXPECT_TRUE(older.common >= 0 && older.common <= 0.751f) << decay << ": " << older.common;
+      }
       const auto edge = walks.at(0).edge({0.3f, 0.3f, 0.15f}, {3, 7}, {1e6f, 1e12f, decay}, 1e-6f);
       EXPECT_TRUE(edge.share >= 0 && edge.share <= 1) << decay << ": " << edge.share;
       EXPECT_TRUE(edge.common >= 0 && edge.common <= 0.751f) << decay << ": " << edge.common;

@@ -2,7 +2,7 @@
 // Of what reached the edge T frames ago (arrivals.h) and dies at the rate u = 1 / d^2 - 1
 //
 //   [ledger share]  E_x = d^2T_x C_still / C V_y at the left or right edge, where walks go up and down alone
-//   [ledger still]  C_still = w / n W / (1 + d), the power sum of a history that has never stepped
+//   [ledger still]  C_still = w / n W / (1 + d), the power sum of a history that has never stepped, of constant counts
 //
 // is left, V being what walking along the edge has made of it (walk_tiles.h). What lies in a row is then one value, in
 // a column it is as alike as along the edge; and the same for the upper and lower edge. Derivation: docs/history.md.

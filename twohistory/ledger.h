@@ -130,8 +130,8 @@ std::array<Real, K> likenesses(const TapSums<K, Real>& sums, const TapPairs& pai
     if (!(noise > 0)) continue;
     const Remembered<Real> history{sums.ledger.weight[j], sums.ledger.ageSum[j], a.factor[j]};
     const Real freshShare = std::min(Real(1), walk.freshNoise(policies[j], n) / noise);
-    const Real perNoise = n > 0 ? a.fresh[j] / (n * noise) : 1 / history.weight;
-    r[j] = tapLikeness(pairs, walk.older(pairs, history), freshShare, walk.edge(pairs, history, perNoise));
+    r[j] = tapLikeness(pairs, walk.older(pairs, history, freshShare), freshShare,
+                       walk.edge(pairs, policies[j], history, noise));
   }
   return r;
 }

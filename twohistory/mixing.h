@@ -12,10 +12,10 @@
 //   [ledger settled]  O = (1 - S (1 - rho)) / (1 + u),  q = rho / O,  S = 1 - sum b^2
 //   [ledger guess]  s -> s + 0.9 s / (s + 0.05) (1/3 - s), for who has no better knowledge of past steps
 //
-// In a pixel whose counts change the share F of the last frame's samples is another than 1 - O, and what is older than
-// the rest is more alike:
+// In a pixel whose counts are not its neighbours' the share F of the last frame's samples is another than 1 - O, and
+// what is older than the rest is a little more alike:
 //
-//   [ledger alike]  r = min(1 - F, q min(3 O, o + 0.2 max(0, o - O)) + edge),  o = 1 - F - E
+//   [ledger alike]  r = min(1 - F, q min(3 O, o + 0.1 max(0, o - O)) + edge),  o = 1 - F - E
 //
 // E: the share that walked in from the image's edge, of which taps have "edge" in common (edge_noise.h).
 // Derivation, and how exact this is: docs/history.md.
@@ -138,7 +138,7 @@ OlderNoise<Real> settledNoise(const TapPairs& p, const WalkSteps<Real>& s, Real 
 template <class Real>
 Real tapLikeness(const TapPairs& p, const OlderNoise<Real>& reference, Real freshShare, const EdgeNoise<Real>& edge) {
   const Real left = 1 - freshShare, older = std::max(Real(0), left - edge.share);  // o
-  const Real counted = std::min(3 * reference.share, older + Real(0.2) * std::max(Real(0), older - reference.share));
+  const Real counted = std::min(3 * reference.share, older + Real(0.1) * std::max(Real(0), older - reference.share));
   return std::min(left, (reference.common * counted + edge.common) / p.all());  // [ledger alike]
 }
 
@@ -157,11 +157,12 @@ struct SettledWalk {
 
   /// w^2 / n of the last frame. n: of the frame that comes.
   Real freshNoise(const Policy& policy, Real n) const { return twohistory::freshNoise(policy, n); }
-  OlderNoise<Real> older(const TapPairs& p, const Remembered<Real>& h) const {
+  /// freshShare: F, in [0, 1].
+  OlderNoise<Real> older(const TapPairs& p, const Remembered<Real>& h, Real /*freshShare*/) const {
     return settledNoise(p, steps, deathRate(h));
   }
-  /// perNoise: w / (n C); 1 / W where n = 0.
-  EdgeNoise<Real> edge(const TapPairs&, const Remembered<Real>&, Real /*perNoise*/) const { return {}; }
+  /// noise: C.
+  EdgeNoise<Real> edge(const TapPairs&, const Policy&, const Remembered<Real>&, Real /*noise*/) const { return {}; }
 };
 
 template <class Real>

@@ -21,9 +21,18 @@ class RememberedWalk {
     for (int k = 0; k < 4; ++k) sum += b[k] * twohistory::freshNoise(policy, counts[k]);
     return sum;
   }
-  OlderNoise<float> older(const TapPairs& pairs, const Remembered<float>& h) const { return reference.older(pairs, h); }
-  EdgeNoise<float> edge(const TapPairs& pairs, const Remembered<float>& h, float perNoise) const {
-    return arrival.isLongAgo() ? EdgeNoise<float>{} : reference.edge(pairs, arrival, h, perNoise);
+  OlderNoise<float> older(const TapPairs& pairs, const Remembered<float>& h, float freshShare) const {
+    return reference.older(pairs, h, freshShare);
+  }
+  EdgeNoise<float> edge(const TapPairs& pairs, const Policy& policy, const Remembered<float>& h, float noise) const {
+    return arrival.isLongAgo() ? EdgeNoise<float>{} : reference.edge(pairs, arrival, h, noisePerWeight(policy) / noise);
+  }
+  /// w / n of the last frame; 0 where it had no samples.
+  float noisePerWeight(const Policy& policy) const {
+    float sum = 0, part = 0;
+    for (int k = 0; k < 4; ++k)
+      if (b[k] > 0 && counts[k] > 0) sum += b[k] * (freshWeight(policy, counts[k]) / counts[k]), part += b[k];
+    return part > 0 ? sum / part : 0.0f;
   }
 };
 
@@ -43,7 +52,7 @@ class WalkMemory {
   /// Adds a frame, after everything of that frame has been gathered. taps, counts: width x height, without padding.
   void update(core::In<Taps> taps, core::In<float> counts) {
     counts_.update(counts);
-    walks_.update(taps);
+    walks_.update(taps, counts_);
     arrivals_.update(taps);
   }
 

@@ -1,6 +1,5 @@
 #include "twohistory/walk_tiles.h"
 
-#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -9,23 +8,19 @@
 namespace twohistory {
 namespace {
 
-constexpr float kLastPlace = kReferenceRates - 1;
+constexpr float kNothing = 1e-30f;  // less noise is none
 
-constexpr int kOctaves = 2;      // between rates
-constexpr float kAsOld = 0.98f;  // of the reference's mean age: as old as it
-
-/// u at a place of the ladder.
-float rateAt(int place) { return std::ldexp(1.0f, -kOctaves * place); }
-
-/// log2 of x > 0, linear between powers of two: at most .09 off.
-float roughLog2(float x) { return static_cast<float>(std::bit_cast<std::int32_t>(x) - 0x3f800000) * 0x1p-23f; }
-
-float placeOfRate(float death) { return std::clamp(roughLog2(death) / -kOctaves, 0.0f, kLastPlace); }
+/// What comes after a, b, c: the logarithm goes on as a parabola, or, if that bends upwards, as a line.
+float goneOn(float a, float b, float c) {
+  if (!(b > c)) return c;
+  const float falls = c / b;
+  return c * falls * std::min(1.0f, falls * a / b);
+}
 
 /// One frame's steps s along kReach covariances that lie `stride` apart, the first of them of no distance.
 void walk(float* r, int stride, float s) {
   static_assert(WalkTiles::kReach == 3);
-  const float here = r[0], one = r[stride], two = r[2 * stride], beyond = one > two ? two * two / one : two;
+  const float here = r[0], one = r[stride], two = r[2 * stride], beyond = goneOn(here, one, two);
   r[0] = (1 - s) * here + s * one;
   r[stride] = (1 - s) * one + 0.5f * s * (here + two);
   r[2 * stride] = (1 - s) * two + 0.5f * s * (one + beyond);
@@ -33,121 +28,121 @@ void walk(float* r, int stride, float s) {
 
 }  // namespace
 
-/// Calls add(noise, part) for each tile and the two rates next to a place.
-template <class Add>
-void ReferenceWalk::between(float place, const Add& add) const {
-  const int first = std::min(static_cast<int>(place), kReferenceRates - 2);
-  const float second = place - static_cast<float>(first);
-  for (int t = 0; t < 4; ++t) {
-    add((*tile[t])[first], part[t] * (1 - second));
-    add((*tile[t])[first + 1], part[t] * second);
-  }
-}
-
-float ReferenceWalk::placeOf(const Remembered<float>& history) const {
-  const float death = std::max(deathRate(history.factor), rateAt(kReferenceRates - 1)), place = placeOfRate(death);
-  if (!(place > 0) || !(history.weight > 0)) return place;
-  float reference = 0;
-  between(place, [&](const ReferenceNoise& n, float b) { reference += b * n.meanAge; });
-  const float age = history.ageSum / history.weight;
-  if (!(age < kAsOld * reference)) return place;
-  return placeOfRate(death + deathRateOfAge(age) - deathRateOfAge(reference));  // [ledger young]
-}
-
-OlderNoise<float> ReferenceWalk::older(const TapPairs& pairs, const Remembered<float>& history) const {
-  float here = 0, row = 0, column = 0, diagonal = 0;
-  between(placeOf(history), [&](const ReferenceNoise& n, float b) {
-    here += b * n.here, row += b * n.row, column += b * n.column, diagonal += b * n.diagonal;
-  });
-  const float older = here - 1;
-  if (!(older > 1e-6f)) return {};
-  return {older / here,
-          (pairs.row * row + pairs.column * column + pairs.diagonal * diagonal) / older};  // [ledger older]
-}
-
-EdgeNoise<float> ReferenceWalk::edge(const TapPairs& pairs, const Arrival& arrival, const Remembered<float>& history,
-                                     float perNoise) const {
-  EdgeWalks<float> walks{};
-  between(placeOf(history), [&](const ReferenceNoise& n, float b) {
-    walks.row.noise += b * n.alongRow.noise, walks.row.alike += b * n.alongRow.alike;
-    walks.column.noise += b * n.alongColumn.noise, walks.column.alike += b * n.alongColumn.alike;
-  });
-  const float death = deathRate(history.factor);
-  return edgeNoise(pairs, arrival, walks, death, stillNoise(history.weight, perNoise, death));
-}
-
 WalkTiles::WalkTiles(int width, int height)
     : width_(width),
       height_(height),
       now_((width + kSide - 1) / kSide, (height + kSide - 1) / kSide, Tile{}),
       before_(now_),
-      rates_(now_.width(), now_.height(), ReferenceWalk::Rates{}) {}
+      noise_(now_.width(), now_.height(), TileNoise{}) {}
 
 ReferenceWalk WalkTiles::at(std::int32_t pixel) const {
   const core::vec2 position(pixel % width_, pixel / width_);
   const TilePlace p(position.x, position.y, kSide, now_.width(), now_.height());
-  return {{&rates_(p.i0, p.j0), &rates_(p.i1, p.j0), &rates_(p.i0, p.j1), &rates_(p.i1, p.j1)},
+  return {{&noise_(p.i0, p.j0), &noise_(p.i1, p.j0), &noise_(p.i0, p.j1), &noise_(p.i1, p.j1)},
           {(1 - p.a) * (1 - p.b), p.a * (1 - p.b), (1 - p.a) * p.b, p.a * p.b}};
+}
+
+WalkTiles::TileSamples WalkTiles::samplesOf(const SampleCounts& counts, int width, core::ivec2 first, core::ivec2 end) {
+  float some = 0, inverse = 0, samples = 0, pixels = 0;
+  for (int y = first.y; y < end.y; ++y)
+    for (int x = first.x; x < end.x; ++x) {
+      const float n = counts.at(y * width + x);
+      if (n > 0) some += 1, inverse += 1 / n, samples += n;
+      pixels += 1;
+    }
+  return {{inverse / pixels, samples / pixels}, {some / pixels, samples / pixels}};
 }
 
 WalkTiles::Tile WalkTiles::mixedAt(core::vec2 position) const {
   const TilePlace p(position.x, position.y, kSide, now_.width(), now_.height());
-  const Tile &a = now_(p.i0, p.j0), &b = now_(p.i1, p.j0), &c = now_(p.i0, p.j1), &d = now_(p.i1, p.j1);
   Tile mixed;
-  for (int k = 0; k < kReferenceRates; ++k) {
-    const auto mix = [&](auto Lags::*of) {
-      for (std::size_t i = 0; i < (mixed.lags[k].*of).size(); ++i)
-        (mixed.lags[k].*of)[i] = p.mix((a.lags[k].*of)[i], (b.lags[k].*of)[i], (c.lags[k].*of)[i], (d.lags[k].*of)[i]);
+  const auto add = [&mixed](const Tile& tile, float b) {
+    const auto addTo = [b](auto& sums, const auto& values) {
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += b * values[i];
     };
-    mix(&Lags::r), mix(&Lags::alongRow), mix(&Lags::alongColumn);
-  }
-  mixed.frames = p.mix(a.frames, b.frames, c.frames, d.frames);
+    for (int r = 0; r < kReferenceRates; ++r)
+      for (int k = 0; k < kReferences; ++k) {
+        Reference& sum = mixed.references[r][k];
+        const Reference& from = tile.references[r][k];
+        addTo(sum.lags, from.lags), addTo(sum.alongRow, from.alongRow), addTo(sum.alongColumn, from.alongColumn);
+        sum.still += b * from.still, sum.weight += b * from.weight, sum.ageSum += b * from.ageSum;
+      }
+    mixed.frames += b * tile.frames;
+  };
+  add(now_(p.i0, p.j0), (1 - p.a) * (1 - p.b)), add(now_(p.i1, p.j0), p.a * (1 - p.b));
+  add(now_(p.i0, p.j1), (1 - p.a) * p.b), add(now_(p.i1, p.j1), p.a * p.b);
   return mixed;
 }
 
-void WalkTiles::step(Lags& lags, const WalkSteps<float>& s, float kept) {
-  for (int i = 0; i < kReach; ++i) walk(&lags.r[i * kReach], 1, s.x);
-  for (int i = 0; i < kReach; ++i) walk(&lags.r[i], kReach, s.y);
-  walk(lags.alongRow.data(), 1, s.x);
-  walk(lags.alongColumn.data(), 1, s.y);
-  for (float& r : lags.r) r *= kept;
-  for (int i = 0; i < kReach; ++i) lags.alongRow[i] *= kept, lags.alongColumn[i] *= kept;
-  lags.r[0] += 1, lags.alongRow[0] += 1, lags.alongColumn[0] += 1;  // [ledger reference]
+void WalkTiles::step(Reference& reference, const WalkSteps<float>& s, float kept, float noise, float weight) {
+  auto& [lags, row, column, still, weights, ages] = reference;
+  for (int i = 0; i < kReach; ++i) walk(&lags[i * kReach], 1, s.x);
+  for (int i = 0; i < kReach; ++i) walk(&lags[i], kReach, s.y);
+  walk(row.data(), 1, s.x), walk(column.data(), 1, s.y);
+  for (float& r : lags) r *= kept;
+  for (int i = 0; i < kReach; ++i) row[i] *= kept, column[i] *= kept;
+  lags[0] += noise, row[0] += noise, column[0] += noise;  // [ledger reference]
+  still = kept * still + noise;
+  const float d = std::sqrt(kept);
+  ages = d * (ages + weights);
+  weights = d * weights + weight;
+  if (!(still > kNothing)) reference = {};
 }
 
-WalkTiles::Tile WalkTiles::next(const TileMotion& motion) const {
+WalkTiles::Tile WalkTiles::next(const TileMotion& motion, const TileSamples& samples) const {
   Tile tile;
   if (!motion.isNew) tile = mixedAt(motion.from);
-  for (int k = 0; k < kReferenceRates; ++k) step(tile.lags[k], motion.steps, 1 / (1 + rateAt(k)));
+  for (int r = 0; r < kReferenceRates; ++r)
+    for (int k = 0; k < kReferences; ++k)
+      step(tile.references[r][k], motion.steps, 1 / (1 + referenceRate(r)), samples.noise[k], samples.weight[k]);
+  tile.last = samples.noise;
   tile.frames = std::min(tile.frames + 1, 1e6f);
   return tile;
 }
 
-ReferenceNoise WalkTiles::noiseOf(const Lags& lags, float frames, float death) {
-  const auto& r = lags.r;
-  const float d = 1 / std::sqrt(1 + death), left = std::pow(d, frames);
-  const float meanAge = d / (1 - d) - (left < 1 ? frames * left / (1 - left) : 0.0f);
-  const float still = (1 - left * left) * (1 + 1 / death);  // of what never steps
-  const auto along = [&](const std::array<float, kReach>& line) {
-    return EdgeWalk<float>{std::min(1.0f, line[0] / still), line[1] / line[0]};  // [ledger along]
+ReferenceNoise WalkTiles::noiseOf(const Reference& of, float fresh) {
+  const auto along = [&](const Line& line) {
+    return EdgeWalk<float>{std::min(1.0f, line[0] / of.still), line[1] / line[0]};  // [ledger along]
   };
-  return {r[0], r[1], r[kReach], r[kReach + 1], std::max(0.0f, meanAge), along(lags.alongRow), along(lags.alongColumn)};
+  if (!(of.lags[0] > kNothing)) return {};
+  return {of.lags[0],
+          of.lags[0] - fresh,
+          of.lags[1],
+          of.lags[kReach],
+          of.lags[kReach + 1],
+          of.lags[0] / of.still,
+          of.ageSum / of.weight,
+          along(of.alongRow),
+          along(of.alongColumn)};
 }
 
-void WalkTiles::update(core::In<Taps> taps) {
+TileNoise WalkTiles::noiseOf(const Tile& tile) {
+  TileNoise noise;
+  for (int r = 0; r < kReferenceRates; ++r)
+    for (int k = 0; k < kReferences; ++k) noise.references[r][k] = noiseOf(tile.references[r][k], tile.last[k]);
+  constexpr int kFaster = 2, kSlower = 3;
+  const float faster = 1 / (1 + referenceRate(kFaster)), slower = 1 / (1 + referenceRate(kSlower));
+  const auto all = [&](float kept) { return (1 - std::pow(kept, tile.frames)) / (1 - kept); };
+  const float allFaster = all(faster), allSlower = all(slower);
+  for (int k = 0; k < kReferences; ++k)
+    noise.regimes[k] = NoiseRegime::of(tile.last[k], tile.references[kFaster][k].still / allFaster,
+                                       tile.references[kSlower][k].still / allSlower, faster, slower);
+  return noise;
+}
+
+void WalkTiles::update(core::In<Taps> taps, const SampleCounts& counts) {
   CHECK_EQ(taps.width, width_);
   CHECK_EQ(taps.height, height_);
   core::forEachTile(
       taps.width, taps.height,
       [&](int x0, int y0, int x1, int y1) {
-        before_(x0 / kSide, y0 / kSide) = next(tileMotion(taps, {x0, y0}, {x1, y1}));
+        const core::ivec2 first(x0, y0), end(x1, y1);
+        Tile& tile = before_(x0 / kSide, y0 / kSide);
+        tile = next(tileMotion(taps, first, end), samplesOf(counts, width_, first, end));
+        noise_(x0 / kSide, y0 / kSide) = noiseOf(tile);
       },
       kSide);
   std::swap(now_, before_);
-  core::forEachPixel(now_.width(), now_.height(), [&](int i, int j) {
-    const Tile& tile = now_(i, j);
-    for (int k = 0; k < kReferenceRates; ++k) rates_(i, j)[k] = noiseOf(tile.lags[k], tile.frames, rateAt(k));
-  });
 }
 
 }  // namespace twohistory

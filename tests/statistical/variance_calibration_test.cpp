@@ -37,8 +37,8 @@ const twohistory::Policies<kHistories> kPolicies{decaying(Weighting::frames, 0.9
                                                  decaying(Weighting::samples, 0.6), decaying(Weighting::frames, 0.98),
                                                  decaying(Weighting::frames, 0.5)};
 
-enum class Counts { fovea, checkerboard, random };
-enum class Way { steady, begins, ends, pauses };  ///< begins: after rest; pauses: in every other frame
+enum class Counts { fovea, checkerboard, random, saccade, jump };  ///< saccade: a fovea that jumps; jump: everywhere
+enum class Way { steady, begins, ends, pauses };                   ///< begins: after rest; pauses: in every other frame
 
 struct Motion {
   const char* name;
@@ -48,16 +48,26 @@ struct Motion {
   Counts counts = Counts::fovea;
   Way way = Way::steady;
   int begins = 0;  ///< first frame that moves, or, of what ends, that does not
+  int jumped = 0;  ///< frames since counts jumped
+  float to = 8;    ///< samples since then, where there was one
 
   bool movesIn(int frame) const {
     return way == Way::pauses ? frame % 2 > 0 : way == Way::ends ? frame < begins : frame >= begins;
   }
 };
 
-/// Samples of a frame: 8 in a moving fovea and 1 elsewhere; 0 and 2 by turns; or at random.
-void place(Counts kind, int frame, core::Image<float>& counts, core::Image<std::uint8_t>& fovea) {
+/// Samples of a frame: 8 in a moving or jumping fovea and 1 elsewhere; 0 and 2 by turns; at random; or as many
+/// everywhere.
+void place(const Motion& m, int frame, core::Image<float>& counts, core::Image<std::uint8_t>& fovea) {
   static const core::Foveation kFoveation({});
   const auto f = static_cast<std::uint32_t>(frame);
+  const Counts kind = m.counts;
+  const bool hasJumped = frame >= kFrames - m.jumped;
+  if (kind == Counts::jump) return counts.fill(hasJumped ? m.to : 1.0f);
+  if (kind == Counts::saccade) {
+    const vec2 gaze((hasJumped ? 0.65f : 0.35f) * kWidth, 0.5f * kHeight);
+    return kFoveation.place(gaze, 1, f, counts, fovea);
+  }
   if (kind == Counts::fovea)
     return kFoveation.place(core::gazeAt({}, frame / 30.0, kWidth, kHeight), 1, f, counts, fovea);
   core::Rng rng(10, core::Pass::lab, 0, f);
@@ -130,7 +140,7 @@ struct Course {
     for (int f = 0; f < kFrames; ++f) {
       taps.emplace_back(kWidth, kHeight), counts.emplace_back(kWidth, kHeight);
       if (f > 0) fillTaps(motion, f, edgeReach, taps.back());
-      place(motion.counts, f, counts.back(), fovea);
+      place(motion, f, counts.back(), fovea);
       for (int i = 0; i < kWidth * kHeight; ++i) {
         const Taps& t = taps[f].data()[i];
         const float n = counts[f].data()[i];
@@ -283,7 +293,7 @@ Calibration expectWithin(const Motion& m, double low, double high, float edgeRea
   for (int k = 0; k <= kHistories; ++k)
     for (int r = 0; r < kRegions; ++r) {
       const double ratio = c.ratio[0][k][r];
-      if (std::isnan(ratio) && (r == 1 || r == 2) && m.counts != Counts::fovea) continue;
+      if (std::isnan(ratio) && (r == 1 || r == 2) && m.counts != Counts::fovea && m.counts != Counts::saccade) continue;
       EXPECT_GT(ratio, low) << m.name << ", " << kCombination[k] << ", region " << r;
       EXPECT_LT(ratio, high) << m.name << ", " << kCombination[k] << ", region " << r;
     }
@@ -354,6 +364,18 @@ TEST(PredictedVariance, WhereTheImageComesInIsWithinAQuarterIfTheEdgeForgets) {
 TEST(PredictedVariance, OfChangingCountsIsWithinAQuarter) {
   expectWithin({"0.37, 0.21, checkerboard", vec2(0.37f, 0.21f), 0, 0, Counts::checkerboard}, 0.8, 1.25);
   expectWithin({"0.5, 0, random counts", vec2(0.5f, 0), 0, 0, Counts::random}, 0.8, 1.25);
+}
+TEST(PredictedVariance, AfterCountsHaveJumpedIsWithinAQuarterWhereAGuessIsNot) {
+  const auto since = [](int frames, const char* name, float step, Counts counts, float to = 8) {
+    Motion m{name, vec2(step), 0, 0, counts};
+    m.jumped = frames, m.to = to;
+    return m;
+  };
+  expectWithin(since(12, "0.2, 0.2, saccade 12 frames ago", 0.2f, Counts::saccade), 0.8, 1.25);
+  expectWithin(since(6, "0.5, 0.5, saccade 6 frames ago", 0.5f, Counts::saccade), 0.8, 1.25);
+  const Calibration c = expectWithin(since(12, "0.2, 0.2, 1 -> 8 12 frames ago", 0.2f, Counts::jump), 0.8, 1.25);
+  EXPECT_GT(c.ratio[3][5][0], 1.5) << "control: guessed steps, U .98";
+  expectWithin(since(6, "0.2, 0.2, no samples for 6 frames", 0.2f, Counts::jump, 0), 0.8, 1.25);
 }
 
 }  // namespace
