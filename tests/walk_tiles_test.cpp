@@ -218,7 +218,7 @@ Course courseOfJump(vec2 moved, float from, float to, int since) {
 TEST(ReferenceWalk, PredictsVariancesWhereCountsHaveJumpedEverywhere) {
   std::vector<Course> jumps, pauses, blinks;
   for (const vec2 moved : {vec2(0.2f), vec2(0.5f), vec2(0.5f, 0)})
-    for (const int since : {1, 2, 5, 12, 24}) {
+    for (const int since : {1, 5, 12, 24}) {
       jumps.push_back(courseOfJump(moved, 8, 1, since)), jumps.push_back(courseOfJump(moved, 1, 8, since));
       pauses.push_back(courseOfJump(moved, 1, 0, since)), blinks.push_back(pauses.back());
       if (since > 5)  // nothing for five frames, and then again
@@ -243,9 +243,10 @@ TEST(ReferenceWalk, PredictsVariancesWhereCountsHaveJumpedEverywhere) {
   const Range again = print("and again", rangeOf<WalkMemory>(blinks, policies));
   EXPECT_GT(again.low, 0.9);
   EXPECT_LT(again.high, 1.2);
-  EXPECT_LT(print("control: by this frame's counts", rangeOf<ThisFramesCounts>(jumps, policies)).low, 0.75);
-  EXPECT_GT(print("control: uniform references", rangeOf<UniformReferences>(jumps, policies)).high, 1.35);
-  EXPECT_GT(print("control: the same without samples", rangeOf<UniformReferences>(pauses, policies)).high, 3);
+  const std::vector<Policy> one{policies[2]};
+  EXPECT_LT(print("control: by this frame's counts", rangeOf<ThisFramesCounts>(jumps, one)).low, 0.75);
+  EXPECT_GT(print("control: uniform references", rangeOf<UniformReferences>(jumps, one)).high, 1.35);
+  EXPECT_GT(print("control: the same without samples", rangeOf<UniformReferences>(pauses, one)).high, 3);
 }
 
 TEST(ReferenceWalk, PredictsVariancesOfWhatHasJustComeOutFromBehindSomething) {
