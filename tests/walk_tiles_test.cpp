@@ -316,7 +316,7 @@ TEST(WalkTiles, KnowNothingInCommonBeforeAnythingMoved) {
   for (int f = 0; f < 9; ++f) walks.update(tapsOf(vec2(f % 3, 0)), oneEach());
   EXPECT_GT(olderAt(walks, 20, 20).share, 0.8f);
   EXPECT_EQ(olderAt(walks, 20, 20).common, 0);
-  EXPECT_LT(static_cast<double>(walks.bytes()) / (kSize * kSize), 7.6);
+  EXPECT_LT(static_cast<double>(walks.bytes()) / (kSize * kSize), 8.1);
 }
 
 /// As olderAt, of a history whose noise is fresh to this share.

@@ -58,14 +58,18 @@ ReferenceWalk::Place ReferenceWalk::placeOf(const Remembered<float>& history) co
 
 OlderNoise<float> ReferenceWalk::older(const TapPairs& pairs, const Remembered<float>& history,
                                        float freshShare) const {
-  OfReferences<float> here{}, share{}, common{};
-  between(placeOf(history).rate, [&](int k, const ReferenceNoise& n, float b) {
-    here[k] += b * n.here, share[k] += b * n.older;
-    common[k] += b * (pairs.row * n.row + pairs.column * n.column + pairs.diagonal * n.diagonal);
+  using N = ReferenceNoise;
+  OfReferences<std::array<float, N::kCovariances>> r{};
+  between(placeOf(history).rate, [&](int k, const N& n, float b) {
+    for (int i = 0; i < N::kCovariances; ++i) r[k][i] += b * n.r[i];
   });
+  OfReferences<float> share, common;
   for (int k = 0; k < kReferences; ++k) {
-    if (!(share[k] > 1e-6f * here[k])) return {};
-    share[k] /= here[k], common[k] /= here[k];
+    const float here = r[k][N::kHere], older = r[k][N::kOlder];
+    if (!(older > 1e-6f * here)) return {};
+    share[k] = older / here;
+    common[k] =
+        (pairs.row * r[k][N::kRow] + pairs.column * r[k][N::kColumn] + pairs.diagonal * r[k][N::kDiagonal]) / here;
   }
   const float t = placeBetween(share, 1 - freshShare, kSame), all = mixed(share, t);
   return {all, mixed(common, t) / all};  // [ledger older]

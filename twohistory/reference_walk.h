@@ -32,8 +32,9 @@ using OfReferences = std::array<T, kReferences>;
 
 /// What a reference that dies at one rate knows of pixels that lie next to each other.
 struct ReferenceNoise {
-  float here = 0, older = 0;                  ///< R_00, R_00 - f
-  float row = 0, column = 0, diagonal = 0;    ///< R_10, R_01, R_11
+  /// R_00, R_00 - f; R_10, R_01, R_11. Eight, so that they mix as vectors.
+  enum Covariance { kHere, kOlder, kRow, kColumn, kDiagonal, kCovariances = 8 };
+  std::array<float, kCovariances> r{};
   float loss = 0;                             ///< R_00 / S
   float meanAge = 0;                          ///< a, in frames
   EdgeWalk<float> alongRow{}, alongColumn{};  ///< of a walk in x or y alone

@@ -105,11 +105,7 @@ ReferenceNoise WalkTiles::noiseOf(const Reference& of, float fresh) {
     return EdgeWalk<float>{std::min(1.0f, line[0] / of.still), line[1] / line[0]};  // [ledger along]
   };
   if (!(of.lags[0] > kNothing)) return {};
-  return {of.lags[0],
-          of.lags[0] - fresh,
-          of.lags[1],
-          of.lags[kReach],
-          of.lags[kReach + 1],
+  return {{of.lags[0], of.lags[0] - fresh, of.lags[1], of.lags[kReach], of.lags[kReach + 1]},
           of.lags[0] / of.still,
           of.ageSum / of.weight,
           along(of.alongRow),
