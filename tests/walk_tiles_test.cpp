@@ -499,6 +499,21 @@ TEST(WalkTiles, StayFiniteOverManyFramesOfAnyMotion) {
   }
 }
 
+TEST(WalkTiles, StayFiniteWhereThereAreNoSamplesForThousandsOfFrames) {
+  WalkTiles walks(kSize, kSize);
+  const core::Image<Taps> taps = tapsOf(vec2(0));
+  const SampleCounts none = countsOf(core::Image<float>(kSize, kSize, 0));
+  walks.update(taps, oneEach());
+  for (int f = 0; f < 6000; ++f) {
+    walks.update(taps, none);
+    for (const float decay : {0.9f, 0.998f, 1.0f}) {
+      const auto edge = walks.at(0).edge({0.3f, 0.3f, 0.15f}, {3, 7}, {1, 1e3f, decay}, 0);
+      ASSERT_TRUE(edge.share >= 0 && edge.share <= 1) << decay << ", frame " << f;
+      ASSERT_TRUE(edge.common >= 0 && edge.common <= 0.751f) << decay << ", frame " << f;
+    }
+  }
+}
+
 TEST(SampleCounts, AreExactWhereTheyAreSmallOrPowersOfTwo) {
   using namespace twohistory::count_code;
   for (int n = 0; n <= 16; ++n) EXPECT_EQ(unpack(pack(static_cast<float>(n))), n);

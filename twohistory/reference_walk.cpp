@@ -101,12 +101,12 @@ float NoiseRegime::meanBefore(float age, float kept) const {
 }
 
 NoiseRegime ReferenceWalk::regimeOf(int reference) const {
-  NoiseRegime mixed;
+  NoiseRegime here;
   for (int t = 0; t < 4; ++t) {
     const NoiseRegime& of = tile[t]->regimes[reference];
-    mixed.now += part[t] * of.now, mixed.old += part[t] * of.old, mixed.frames += part[t] * of.frames;
+    here.now += part[t] * of.now, here.old += part[t] * of.old, here.frames += part[t] * of.frames;
   }
-  return mixed;
+  return here;
 }
 
 /// C_still / C of what reached the edge so many frames ago or earlier, before it died off. Where the last frame had
@@ -120,10 +120,11 @@ OfReferences<float> ReferenceWalk::reachedShare(const Remembered<float>& history
     const NoiseRegime regime = regimeOf(k);
     const float then = regime.meanBefore(frames, kept);
     const float ofWeight = k == 0 ? regime.now : regime.meanBefore(0, std::sqrt(kept));
+    const float all = regime.meanBefore(0, kept) * loss[k];  // 0 after thousands of frames without samples
     if (perNoise > 0 && ofWeight > 0)
       share[k] = still * (then / ofWeight);  // [ledger reached]
-    else if (loss[k] > 0)
-      share[k] = then / (regime.meanBefore(0, kept) * loss[k]);
+    else if (all > 0)
+      share[k] = then / all;
   }
   return share;
 }

@@ -4,15 +4,14 @@
 //   [ledger between]  t = (1 - F - O_f) / (O_s - O_f), or at the image's edge (A/W - a_f) / (a_s - a_f), in [0, 1]
 //   [ledger young]    u <- u + rate(A/W) - rate(a),  rate(x) = (1 + 1/x)^2 - 1,  a = min(a_f, a_s)
 //   [ledger regime]   f_i - f = (f_old - f) D_i^K for two rates i: f_old until K frames ago, f since then
-//   [ledger reached]  C_still -> C_still f_T / f_W,  f_T = f + (f_old - f) D^max(0, K - T);  f_W = f, or with d and T =
-//   0
+//   [ledger reached]  C_still -> C_still f_T / f_W,  f_T = f + (f_old - f) D^max(0, K - T)
 //
 // The first: what is older than a frame, and how alike it is. Where counts have changed, the reference that weighs
 // frames and that which weighs samples differ, and a history lies between them: by the share F of its noise that is
 // fresh, or, where the edge's noise is part of that, by its mean age. The third: a pixel that is younger than its tile,
 // of the mean age a, has a shorter walk. The last two: how noisy samples were when they reached the image's edge T
 // frames ago or earlier (edge_noise.h), as if counts had jumped once; f_i are means over the past that die at the rate
-// i, and f_W is what the history's weight is taken for: that of the last frame by frames, the mean n by samples.
+// i, and f_W is what the history's weight is taken for: f by frames, by samples the mean n, which is f_0 of d for D.
 #pragma once
 
 #include "twohistory/edge_noise.h"
@@ -47,7 +46,7 @@ struct NoiseRegime {
 
   /// now: of the last frame; faster, slower: means over a past that dies at two rates D.
   static NoiseRegime of(float now, float faster, float slower, float fasterKept, float slowerKept);
-  /// Mean of what is `frames` old or older and dies to the factor `kept` a frame.
+  /// f_T of what is `age` frames old or older and dies to the factor `kept` a frame.
   float meanBefore(float age, float kept) const;
 };
 
